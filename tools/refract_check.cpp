@@ -331,8 +331,8 @@ std::string whyNotOfScene(const CheckResult& result, const Options& o)
         return "the images do not tell how the cameras stand to each other: " + more;
     for (const TurnCheck& turn : result.turns)
         if (powerOf(turn, result, o.detect) < CERTAIN && !o.hasHistory())
-            return format("camera %d: these images would show a turn by %g deg with a probability of only %.0f %%, so 'unchanged' cannot be "
-                          "said; ", turn.camera + 1, o.detect, 100.*powerOf(turn, result, o.detect)) + more + ", or ask for a larger "
+            return format("camera %d: these images would show a turn by %g deg with a probability of only %.0f %%, so 'unchanged' cannot "
+                          "be said; ", turn.camera + 1, o.detect, 100.*powerOf(turn, result, o.detect)) + more + ", or ask for a larger "
                 "--detect";
     return "";
 }
@@ -458,8 +458,8 @@ void printTurns(const CheckResult& result, const Options& o)
 void printScene(const SceneMatches& matches)
 {
     std::cout << '\n';
-    printLines(format("%d matches of %d moment%s; %d more left out as no point explains them, about %.0f wrong ones among the rest.",
-                      matches.good.size(), matches.moments, matches.moments == 1 ? "" : "s", matches.leftOut, matches.wrongLeft));
+    printLines(format("%d matches of %d moment%s; %d more left out as no point explains them, about %.0f wrong ones among the "
+                      "rest.", matches.good.size(), matches.moments, matches.moments == 1 ? "" : "s", matches.leftOut, matches.wrongLeft));
     printLines("No scene shows a turn of the whole rig, or another scale.");
 }
 

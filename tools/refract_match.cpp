@@ -79,8 +79,8 @@ void print(const SceneMatches& result)
 {
     std::cout << format("%zu matches of %d moment%s, %d of them left out as no point explains them; about %.0f wrong ones are left\n",
                         result.good.matches.names.size(), result.moments, result.moments == 1 ? "" : "s", result.leftOut, result.wrongLeft)
-              << format("%d were found within %.1f px of their curves, %d taken, spread over image and depth\n", result.found, result.search,
-                        result.chosen)
+              << format("%d were found within %.1f px of their curves, %d taken, spread over image and depth\n", result.found,
+                        result.search, result.chosen)
               << format("standard deviation of a pixel: %.3f px, by the size s of a feature sqrt(%.3f^2 + (%.3f s)^2)\n",
                         result.good.matches.usualStd(), result.noise.floor, result.noise.share);
 }

@@ -151,8 +151,11 @@ inline TexturedScene roomOf(scenes::Random& random, int things = 7)
         if (i % 2)
             scene.surfaces.push_back(std::make_shared<Sphere>(at, random.uniform(40, 90), white));
         else
-            scene.surfaces.push_back(std::make_shared<Plane>(at, cv::normalize(Vec3d(random.uniform(-0.5, 0.5), random.uniform(-0.4, 0.4), -1)),
-                                     Vec3d(1, 0, 0), cv::Size2d(random.uniform(40, 120), random.uniform(40, 120)), white));
+        {
+            const Vec3d normal = cv::normalize(Vec3d(random.uniform(-0.5, 0.5), random.uniform(-0.4, 0.4), -1));
+            const cv::Size2d half(random.uniform(40, 120), random.uniform(40, 120));
+            scene.surfaces.push_back(std::make_shared<Plane>(at, normal, Vec3d(1, 0, 0), half, white));
+        }
     }
     return scene;
 }

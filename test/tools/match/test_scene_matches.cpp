@@ -16,11 +16,10 @@ using namespace match_scene;
 
 namespace {
 
-SceneMatcher matcherOf(const Calibration& calibration, int count = 3000)
+SceneMatcher matcherOf(const Calibration& calibration)
 {
     SceneOptions options;
     options.depth = DEPTH;
-    options.count = count;
     return SceneMatcher(calibration, options);
 }
 
@@ -82,8 +81,9 @@ TEST_CASE("Matches of a rendered scene are right, and as good as they say", "[to
         const SceneMatches result = matcher.goodOf(all);
         const Truth found(room, rig.truth, all), good(room, rig.truth, result.good);
         const double across = std::sqrt(good.across/good.right), along = std::sqrt(good.along/good.right);
-        std::cout << cv::format("[numbers] matches %s: %d, wrong %d (said: %.1f; before the fit %d), good ones lost %d; error over stated across "
-                                "the curves %.3f, along %.3f; std %.3f px, mean error %.4f %.4f px\n", outerIndex > 1 ? "in water" : "in air",
+        std::cout << cv::format("[numbers] matches %s: %d, wrong %d (said: %.1f; before the fit %d), good ones lost %d; error over "
+                                "stated across the curves %.3f, along %.3f; std %.3f px, mean error %.4f %.4f px\n",
+                                outerIndex > 1 ? "in water" : "in air",
                                 good.right + good.wrong, good.wrong, result.wrongLeft, found.wrong, found.right - good.right, across, along,
                                 result.good.matches.usualStd(), good.mean.x/good.right, good.mean.y/good.right);
         CHECK(good.right > 1000);
@@ -105,13 +105,14 @@ TEST_CASE("A scene shows in one pair that a camera turned by 0.05 degrees, and i
     {
         const Vec3d turn = degrees*DEGREE*cv::normalize(Vec3d(1, 0.6, 0));
         const Calibration calibration = beforeTurn(rig.calibration, turn);
-        const SceneMatcher matcher = matcherOf(calibration, 700);
+        const SceneMatcher matcher = matcherOf(calibration);
         const CheckResult result = checkOf(calibration, matcher.goodOf(matcher.matchesOf("room", images)), FALSE_ALARM);
         INFO(causesIn(result));
         CHECK(result.changed == (degrees > 0));
         REQUIRE(result.turns.size() == 2);
         CHECK(powerOf(result.turns[0], result, 0.1) > 0.95);
-        const auto named = std::find_if(result.changes.begin(), result.changes.end(), [](const NamedChange& c) { return c.name == TURNED; });
+        const auto isTurn = [](const NamedChange& c) { return c.name == TURNED; };
+        const auto named = std::find_if(result.changes.begin(), result.changes.end(), isTurn);
         CHECK((named != result.changes.end()) == (degrees > 0));
         if (named != result.changes.end())
             CHECK(std::abs(named->values[0].value - degrees) < 3.5*named->values[0].std);
@@ -119,7 +120,7 @@ TEST_CASE("A scene shows in one pair that a camera turned by 0.05 degrees, and i
 }
 
 // TRIALS=50 refract_tools_tests "[scene-reach]": what checks by scenes reach, pairs of 640x512.
-TEST_CASE("What checks by a scene reach", "[tools][match][.monte-carlo][scene-reach]")
+TEST_CASE("What checks by a scene reach", "[tools][.monte-carlo][scene-reach]")
 {
     const int trials = scenes::trials(20);
     const double FALSE_ALARM = 0.01;
@@ -173,9 +174,10 @@ TEST_CASE("What checks by a scene reach", "[tools][match][.monte-carlo][scene-re
         }
         std::sort(seconds.begin(), seconds.end());
         std::sort(probabilities.begin(), probabilities.end());
-        std::cout << cv::format("[numbers] scenes %s, %d trials of one pair: false alarms %d (stated %.1f); p of a turn, quartiles %.2f %.2f %.2f; "
-                                "wrong matches %.2f %% (said %.2f %%), good ones lost %.1f %%; std: error over stated across %.3f, along %.3f; "
-                                "%.2f s (median)\n", outerIndex > 1 ? "in water" : "in air", trials, alarms, trials*FALSE_ALARM,
+        std::cout << cv::format("[numbers] scenes %s, %d trials of one pair: false alarms %d (stated %.1f); p of a turn, quartiles %.2f "
+                                "%.2f %.2f; wrong matches %.2f %% (said %.2f %%), good ones lost %.1f %%; std: error over stated "
+                                "across %.3f, along %.3f; %.2f s (median)\n",
+                                outerIndex > 1 ? "in water" : "in air", trials, alarms, trials*FALSE_ALARM,
                                 probabilities[probabilities.size()/4], probabilities[probabilities.size()/2],
                                 probabilities[3*probabilities.size()/4], 100.*wrong/(wrong + right), 100.*said/(wrong + right),
                                 100.*lost/(lost + right), std::sqrt(across/right), std::sqrt(along/right), seconds[seconds.size()/2]);
@@ -184,8 +186,8 @@ TEST_CASE("What checks by a scene reach", "[tools][match][.monte-carlo][scene-re
             double squares = 0;
             for (double e : errors[turn.first])
                 squares += e*e;
-            std::cout << cv::format("[numbers]   turned by %.2f degrees: found %d, named %d, first %d; error of the angle over stated %.2f\n",
-                                    turn.first, turn.second[0], turn.second[1], turn.second[2],
+            std::cout << cv::format("[numbers]   turned by %.2f degrees: found %d, named %d, first %d; error of the angle over stated "
+                                    "%.2f\n", turn.first, turn.second[0], turn.second[1], turn.second[2],
                                     std::sqrt(squares/std::max<size_t>(1, errors[turn.first].size())));
         }
         CHECK(alarms <= 1 + 3*trials*FALSE_ALARM);

@@ -39,7 +39,8 @@ ToolResult check(const std::string& calibration, const std::string& left, const 
 TEST_CASE("Matches of the bundled scene go into refract_bundle", "[programs][match]")
 {
     const TemporaryFolder f;
-    const ToolResult match = runTool("refract_match " + CALIB + " " + LEFT + " " + RIGHT + DEPTH + " --count=800 --out=" + f / "matches.csv");
+    const ToolResult match = runTool("refract_match " + CALIB + " " + LEFT + " " + RIGHT + DEPTH + " --count=800 --out="
+                                     + f / "matches.csv");
     INFO(match.err + match.out);
     REQUIRE(match.code == 0);
     CHECK(mentions(match.out, "left out"));
@@ -124,4 +125,18 @@ TEST_CASE("A wall without texture cannot tell", "[programs][match][check]")
     INFO(result.err + result.out);
     CHECK(result.code == 1);
     CHECK(mentions(result.err, "matches"));
+}
+
+TEST_CASE("Images of cameras that are exchanged are named, and those of another rig", "[programs][match][check]")
+{
+    const TemporaryFolder f;
+    ToolResult result = check(CALIB, RIGHT, LEFT);
+    INFO(result.err + result.out);
+    CHECK(result.code == 1);
+    CHECK(mentions(result.err, "swapped"));
+    writeTurned(f / "other.yml", cv::Vec3d(4, 2, 0));
+    result = check(f / "other.yml", LEFT, RIGHT);
+    INFO(result.err + result.out);
+    CHECK(result.code == 1);
+    CHECK(mentions(result.err, "is the calibration of this rig"));
 }

@@ -223,8 +223,8 @@ BundleAdjustment adjustBundle(const BundleStart& start, const Matches& matches, 
     {
         fit.rms = refractiveBundleAdjust(pixels, fit.rig.cameras, fit.rig.windows, Rs, Ts, noArray(), noArray(), points3D, lengths.rows(),
                                          fit.stdDeviations, fit.covariance, deviations, noArray(), inliers,
-                                         start.flags | (robust ? GLASS_ROBUST : 0), noArray(), criteria, noArray(), covariancesOf(matches), start.covariance,
-                                         lengths.commonStd());
+                                         start.flags | (robust ? GLASS_ROBUST : 0), noArray(), criteria, noArray(), covariancesOf(matches),
+                                         start.covariance, lengths.commonStd());
     }
     catch (const CalibrationError& e)
     {

@@ -7,6 +7,7 @@
 #include "match/chains.hpp"
 #include "bundle/bundle_adjustment.hpp"
 #include "match/moved_rig.hpp"
+#include "match/pair_mistakes.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -51,7 +52,8 @@ std::vector<Moment> sharedMoments(const std::vector<Frames>& cameras)
     for (const Frames& frames : cameras)
         all.push_back(&frames);
     std::vector<Moment> moments = momentsOf(all);
-    const auto isAlone = [](const Moment& m) { return std::count_if(m.frames.begin(), m.frames.end(), [](int f) { return f >= 0; }) < 2; };
+    const auto isAlone = [](const Moment& m) {
+        return std::count_if(m.frames.begin(), m.frames.end(), [](int f) { return f >= 0; }) < 2; };
     moments.erase(std::remove_if(moments.begin(), moments.end(), isAlone), moments.end());
     if (moments.empty())
         throw Failure("no image of '" + cameras[0].source() + "' has the name of one of another camera: images of one moment need equal "
@@ -65,6 +67,37 @@ void setStds(const MatchNoise& noise, ScaledMatches& scaled)
     for (std::vector<double>& ofCamera : scaled.matches.stds)
         for (double& std : ofCamera)
             std = noise.stdOf(std);         // NaN stays
+}
+
+//! Of one moment of cameras 1 and 2; with a frame of camera 2 so many moments later.
+PairDiagnosis diagnosisOf(const Calibration& calibration, std::vector<Frames>& cameras, const std::vector<Moment>& moments, int at,
+                          int later)
+{
+    const int other = at + later;
+    if (other < 0 || other >= (int)moments.size() || moments[at].frames[0] < 0 || moments[other].frames[1] < 0)
+        return {};
+    return diagnosePair(firstPair(calibration), greyFrame(cameras[0], moments[at].frames[0], calibration, 0),
+                        greyFrame(cameras[1], moments[other].frames[1], calibration, 1));
+}
+
+//! Why images hardly match, as a sentence's end; empty: nothing is known to be wrong.
+std::string mistakeIn(const Calibration& calibration, std::vector<Frames>& cameras, const std::vector<Moment>& moments)
+{
+    const double FITS = 2.;             // px
+    const int MOST_LATE = 3;            // moments
+    const int at = (int)moments.size()/2;
+    const PairDiagnosis asGiven = diagnosisOf(calibration, cameras, moments, at, 0);
+    if (!asGiven.mistake.empty())
+        return ": " + asGiven.mistake + " (LEFT is camera 1, RIGHT camera 2)";
+    for (int later = -MOST_LATE; later <= MOST_LATE; later++)
+        if (later && !(asGiven.rows < FITS) && diagnosisOf(calibration, cameras, moments, at, later).rows < FITS)
+            return format(": images of camera 2 are of other moments than those of camera 1, which fit %d image%s %s", std::abs(later),
+                          std::abs(later) == 1 ? "" : "s", later > 0 ? "later" : "earlier");
+    if (asGiven.rows > FITS)
+        return format(": %d features are alike in both images, but their rays miss each other by %.1f px (median): is the calibration of "
+                      "this rig, and are the images of one moment? A camera that turned by more than %g degrees needs --search of "
+                      "refract_match", asGiven.features, asGiven.rows, MAY_HAVE_TURNED);
+    return "";
 }
 
 //! Matches by chance are anywhere within the search, right ones within a few standard deviations.
@@ -146,8 +179,8 @@ SceneMatches SceneMatcher::goodOf(const ScaledMatches& all) const
     ScaledMatches chosen = all.only(spreadChoice(all, input_.rig, options_.count));
     result.chosen = chosen.size();
     if (result.chosen < FEWEST)
-        throw Failure(format("only %d matches were found, fewer than %d: more texture, light or images are wanted, or --depth is not that of "
-                             "the scene", result.chosen, FEWEST));
+        throw Failure(format("only %d matches were found, fewer than %d: more texture, light or images are wanted, or --depth is not that "
+                             "of the scene", result.chosen, FEWEST));
     const std::vector<int> good = leaveOutWrong(chosen, result.noise);
     result.good = chosen.only(good);
     result.leftOut = result.chosen - (int)good.size();
@@ -173,8 +206,23 @@ SceneMatches matchScene(const Calibration& calibration, std::vector<Frames>& cam
             progress.step();
         }
     }
-    SceneMatches result = matcher.goodOf(all);
+    const double MANY = 0.3;            // of the matches left out: something is wrong with all
+    const double NO_FEATURE = 1.;       // px: features are placed better
+    SceneMatches result;
+    try
+    {
+        result = matcher.goodOf(all);
+    }
+    catch (const Failure& failure)
+    {
+        throw Failure(failure.what() + mistakeIn(calibration, cameras, moments));
+    }
     result.moments = (int)moments.size();
+    const bool isNoFit = result.good.matches.usualStd() > NO_FEATURE;
+    const std::string mistake = isNoFit || result.leftOut > MANY*result.chosen ? mistakeIn(calibration, cameras, moments) : "";
+    if (isNoFit || !mistake.empty())
+        throw Failure(format("%d of %d matches contradict all others, which fit within %.2g px", result.leftOut, result.chosen,
+                             result.good.matches.usualStd()) + mistake);
     return result;
 }
 
