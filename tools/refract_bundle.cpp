@@ -23,7 +23,8 @@ refract_calib: --window=dome --radius=50 --thickness=5 --index=PMMA --outer-inde
 is enough to start from, unless --center says otherwise; a tube needs --axis, roughly; --bow-std lets flat windows be bent.
 
 matches.csv: [image,]id,u1,v1,u2,v2,..., one row a point, its raw pixel in each camera; an empty cell where a camera did not see
-it. The same id with another image is another point: of a wand, image is the moment. What refract_measure wrote will do.
+it. The same id with another image is another point: of a wand, image is the moment. What refract_measure or refract_match wrote will
+do. std1,std2,... (of all cameras, or none) say how well each pixel is known; without, all are alike.
 
 lengths.csv: [image,]id1,id2,length,std, distances between points, with one standard deviation; without image a row is of all images
 that show both points. Rows with equal length and std are one object: its error is one, however many moments there are.
@@ -66,7 +67,7 @@ void addOptions(OptionParser& parser, Options& o)
     parser.addFlag("--no-window", o.bundle.noWindow, "start.yml has no glass_window, and there is none");
     parser.addNegation("--no-robust", o.robust, "every match is right; by default wrong ones are left out");
     parser.add("--pixel-sigma", o.pixelSigma, "noise of a pixel coordinate that the matches are known to have: far above it they "
-        "contradict the start (default: that of start.yml, or 2 px at most)").check(moreThanZero());
+        "contradict the start (default: std1,std2,... of the matches, that of start.yml, or 2 px at most)").check(moreThanZero());
     parser.add("--out", o.out, "the calibration to write (.yml, .xml, .json)").required();
     parser.add("--points-out", o.pointsOut, "points.csv to write");
     parser.add("--summary", o.summary, "JSON file with all that is said, and more");
@@ -118,7 +119,7 @@ int refract_bundle_main(int argc, char** argv)
         requireScale(start, options.start, matches, lengths);
         requireSameMoments(start, matches);
         const BundleAdjustment adjustment = adjustBundle(start, matches, lengths, options.robust);
-        const double knownSigma = options.pixelSigma > 0. ? options.pixelSigma : file.sigma;
+        const double knownSigma = options.pixelSigma > 0. ? options.pixelSigma : !matches.stds.empty() ? matches.usualStd() : file.sigma;
         BundleFindings findings = findingsOf(start, lengths, adjustment, knownSigma, options.maxRms);
         explain(options, file, matches, lengths, start, adjustment, findings);
         const std::string unit = !options.bundle.unit.empty() ? options.bundle.unit : file.unit;

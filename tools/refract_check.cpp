@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // The manual: what --help prints first.
-static const char MANUAL[] = R"(Checks whether anything has changed since the calibration, and what, from one new pair or a few images.
+static const char MANUAL[] = R"(Checks whether anything has changed since the calibration, and what, from one new pair or a few images of
+a board, or of any scene.
 
   refract_check calib.yml --size=6x5 --square=39 --direct=new/direct.png --glass=new/glass.png
   refract_check calib.yml --size=6x5 --square=39 --glass='new/*.png'                          no image without the window
   refract_check calib.yml ... --direct='d1/*' --glass='g1/*' --direct2='d2/*' --glass2='g2/*'      a stereo rig
+  refract_check calib.yml --scene='left/*.png' --scene2='right/*.png' --depth=450,1150                   the same without a board
 
 One image each of --direct and --glass are a pair; among several, those with the same name. The target must not have moved
 between them, not even by a tenth of a pixel: in air, such a shift looks like a tilt of the window (--placement-std).
@@ -16,6 +18,9 @@ of different moments. What explains the images best is named with its value and 
 The noise comes from the calibration's residuals, the calibration's own error from the covariance in calib.yml.
 A new pane is wedge-shaped in another way than the old one, which looks like a tilt: with --new-pane, that is part of the +-.
 If nothing changed, it says that something did with the probability --false-alarm.
+
+--scene, --scene2, ... are images, quoted globs or videos of all cameras, in which refract_match finds points; --depth is z of the scene in
+the frame of camera 1. No scene shows a turn of the whole rig, or another scale; in air it hardly shows a window's tilt.
 
   refract_check calib.yml ... --history=rig7.json              every month: keeps this check, and draws the control charts of all
 
@@ -27,7 +32,8 @@ calibration the same. An edited or deleted record is told. Two checks at once wa
 --outer-index=seawater:T=8,S=35 says the scene's medium now, where it is not that of the calibration.
 
 Exit code: 0 unchanged, 2 something changed (with --history, or a chart is beyond its limit), 1 could not tell: bad images, or images
-that would not show a tilt of --detect degrees with a probability of 95 % (not with --history, which says what drift would be found).)";
+that would not show a tilt of --detect degrees, or in a scene a turn of a camera, with a probability of 95 % (not with --history, which says
+what drift would be found).)";
 
 #include "assess/new_pane.hpp"
 #include "assess/rig_check.hpp"
@@ -48,6 +54,9 @@ that would not show a tilt of --detect degrees with a probability of 95 % (not w
 #include "history/history_lock.hpp"
 #include "history/history_page.hpp"
 #include "measure/measurement.hpp"
+#include "match/depth_range.hpp"
+#include "match/scene_check.hpp"
+#include "match/scene_matches.hpp"
 #include "report/plot.hpp"
 #include <algorithm>
 #include <filesystem>
@@ -68,6 +77,8 @@ struct Options
     std::string calibration, imageSize, summary, unit;
     RigSources images;
     TargetOptions target;
+    PerCamera<std::string> scene;
+    std::string depth;
     double falseAlarm = 0., detect = 0.1, sigma = 0.;
     bool newPane = false, fixedTarget = false;
     PaneStd pane = {0., 0.001, 0.};
@@ -78,6 +89,7 @@ struct Options
     double drift = 0.02;
 
     bool hasHistory() const { return !history.empty(); }
+    bool isOfScene() const { return !scene[0].empty(); }
     //! Of the check by itself.
     double falseAlarmOfCheck() const { return hasHistory() ? SHARE_OF_CHECK*falseAlarm : falseAlarm; }
     std::string pageFile() const
@@ -93,6 +105,17 @@ void addOptions(OptionParser& parser, Options& o)
     parser.add("--unit", o.unit, "unit of --square; what refract_calib had, or nothing")
         .check(isMember(unitNames()));
     o.images.addTo(parser, "new images through the window: glob, corners.vnl or points.csv", "new images without the window");
+    for (int c = 0; c < MAX_CAMERAS; c++)
+    {
+        Option option = parser.add("--scene" + cameraSuffix(c), o.scene[c], c ? "the same of camera " + cameraSuffix(c)
+                                   : "new images of any scene, in place of those of a target: image, glob or video");
+        if (c > 1)
+            option.hide();
+    }
+    parser.add("--depth", o.depth, "with --scene: NEAR,FAR, z in the frame of camera 1 (default: the calibrated volume, and half as far "
+        "again)").needs(parser.get("--scene"));
+    for (const char* ofTarget : {"--glass", "--size", "--square"})      // requireOneKind asks for them
+        parser.get(ofTarget).required(false);
     parser.add("--image-size", o.imageSize, "WxH; needed for corners.vnl, otherwise checked");
     parser.add("--false-alarm", o.falseAlarm, "probability of a change that is none (default: 0.01; with --history 1/370, of all "
         "charts together)").check(between(1e-9, 0.5));
@@ -140,6 +163,24 @@ double usualPlacementOf(const Calibration& calibration)
                                           : USUAL_PLACEMENT_MM/millimetresIn(calibration.unit.empty() ? "mm" : calibration.unit);
 }
 
+//! Of a target or of a scene, as the options say it together.
+void requireOneKind(const Options& o)
+{
+    const auto require = [](bool isGiven, const char* option) {
+        if (!isGiven)
+            throw Failure(std::string(option) + " is required, or --scene with images of all cameras; see --help");
+    };
+    if (!o.isOfScene())
+    {
+        require(!o.images.glass[0].empty(), "--glass");
+        require(!o.target.size.empty(), "--size");
+        require(o.target.square > 0., "--square");
+        return;
+    }
+    if (o.images.cameraCount() > 0 || o.target.given() || o.placement > 0.)
+        throw Failure("--scene is without a target: leave --direct, --glass, --size, --square and --placement-std out");
+}
+
 //! The targets may have moved between the new images of pairs, independently of what happened when the calibration was made.
 void addPlacement(double placement, const std::vector<View>& views, CheckInput& input)
 {
@@ -151,6 +192,18 @@ void addPlacement(double placement, const std::vector<View>& views, CheckInput& 
     const cv::Mat covariance = targetCovarianceOf(data, input.rig, std);
     if (!covariance.empty())
         input = withTargetColumns(input, covariance);
+}
+
+CheckResult checkViews(const Options& o, const std::vector<View>& views, const Calibration& calibration, CheckInput& input)
+{
+    addPlacement(o.placement, views, input);
+    return checkRig(input, views, o.falseAlarmOfCheck(), calibration.unit);
+}
+
+CheckResult checkMatches(const Options& o, const SceneMatches& matches, const Calibration& calibration, CheckInput& input)
+{
+    input.sigma = matches.good.matches.usualStd();          // the noise of features, which is not that of a target's points
+    return checkScene(input, observationsOf(input.rig, matches.good.matches), o.falseAlarmOfCheck(), calibration.unit);
 }
 
 //! If there is one image for each camera, they are one view, whatever their names.
@@ -225,6 +278,32 @@ NewImages readViews(const Options& o, const Calibration& calibration, const Targ
     return result;
 }
 
+//! Points of a scene in all its images.
+struct SceneImages
+{
+    SceneMatches matches;
+    std::vector<std::string> files;
+};
+
+SceneImages readScene(const Options& o, const Calibration& calibration, const Command& command)
+{
+    std::vector<std::string> sources;
+    for (const std::string& source : o.scene)
+        if (!source.empty())
+            sources.push_back(source);
+    std::vector<Frames> cameras = framesOf(sources, calibration, o.calibration);
+    SceneImages result;
+    for (const Frames& frames : cameras)
+        if (frames.isVideo())
+            result.files.push_back(frames.source());
+        else
+            result.files.insert(result.files.end(), frames.files().begin(), frames.files().end());
+    SceneOptions options;
+    options.depth = o.depth.empty() ? calibratedDepthRange(calibration, o.calibration) : givenDepthRange(o.depth, calibration);
+    result.matches = matchScene(calibration, cameras, options, command.quiet());
+    return result;
+}
+
 //! How many times as many images would show the tilt, or 0 if no number would.
 int imagesNeeded(const WindowCheck& window, const CheckResult& result, double degrees)
 {
@@ -251,9 +330,27 @@ std::string detected(const WindowCheck& window, const Options& o)
     return format("%.3g (%g deg, as seen from a radius away)", o.detect*window.lengthPerDegree, o.detect);
 }
 
+//! Empty, or why a scene does not tell.
+std::string whyNotOfScene(const CheckResult& result, const Options& o)
+{
+    if (result.changed)
+        return "";
+    const std::string more = "give images of more, and more textured, things, near and far, in the corners too, at more moments";
+    if (result.turns.empty())
+        return "the images do not tell how the cameras stand to each other: " + more;
+    for (const TurnCheck& turn : result.turns)
+        if (powerOf(turn, result, o.detect) < CERTAIN && !o.hasHistory())
+            return format("camera %d: these images would show a turn by %g deg with a probability of only %.0f %%, so 'unchanged' cannot "
+                          "be said; ", turn.camera + 1, o.detect, 100.*powerOf(turn, result, o.detect)) + more + ", or ask for a larger "
+                "--detect";
+    return "";
+}
+
 //! Empty, or why the images do not tell.
 std::string whyNot(const CheckResult& result, const Options& o, const CheckInput& input)
 {
+    if (o.isOfScene())
+        return whyNotOfScene(result, o);
     if (result.changed)
         return "";
     for (const WindowCheck& window : result.windows)
@@ -328,8 +425,12 @@ Json jsonOf(const CheckResult& result, const Options& o, const CheckInput& input
         windows.append(jsonOf(w, powerOf(w, result, o.detect)));
     for (const NamedChange& change : result.changes)
         changes.append(jsonOf(change));
+    Json turns = Json::array();
+    for (const TurnCheck& turn : result.turns)
+        turns.append({{"camera", turn.camera + 1}, {"name", turn.name}, {"std_deg", turn.stdDeg},
+                      {"probability_if_unchanged", turn.probability}, {"detection_probability", powerOf(turn, result, o.detect)}});
     return {
-        {"verdict", verdict}, {"why", why}, {"windows", windows}, {"changes", changes}, {"explained", result.explained},
+        {"verdict", verdict}, {"why", why}, {"windows", windows}, {"turns", turns}, {"changes", changes}, {"explained", result.explained},
         {"false_alarm", o.falseAlarm}, {"detect_deg", o.detect}, {"sigma_px", input.sigma}, {"sigma_seen_px", result.sigmaSeen}};
 }
 
@@ -351,10 +452,32 @@ void printCause(const CheckResult& result)
     std::cout << '\n';
 }
 
+void printTurns(const CheckResult& result, const Options& o)
+{
+    Table table({"", "+- deg (worst axis)", "chance if unchanged", format("would show %g deg", o.detect)}, SCREEN);
+    for (const TurnCheck& turn : result.turns)
+        table.add({turn.name.substr(0, turn.name.rfind(" changed")), format("%.2g", turn.stdDeg), format("%.2g", turn.probability),
+                   format("%.1f %%", 100.*powerOf(turn, result, o.detect))});
+    if (!result.turns.empty())
+        table.print(std::cout);
+    std::cout << '\n';
+}
+
+//! Of how many matches, and what these cannot tell.
+void printScene(const SceneMatches& matches)
+{
+    std::cout << '\n';
+    printLines(format("%d matches of %d moment%s; %d more left out as no point explains them, about %.0f wrong ones among the "
+                      "rest.", matches.good.size(), matches.moments, matches.moments == 1 ? "" : "s", matches.leftOut, matches.wrongLeft));
+    printLines("No scene shows a turn of the whole rig, or another scale.");
+}
+
 void print(const CheckResult& result, const Options& o, const CheckInput& input)
 {
     if (result.changed)
         printCause(result);
+    if (o.isOfScene())
+        printTurns(result, o);
     const bool anyCentre = std::any_of(result.windows.begin(), result.windows.end(), [](const auto& w) { return w.lengthPerDegree > 0.; });
     Table table({"", anyCentre ? "moved" : "tilt, deg", "+- (two principal)", "chance if unchanged", format("would show %g deg", o.detect),
                  ""}, SCREEN);
@@ -371,8 +494,9 @@ void print(const CheckResult& result, const Options& o, const CheckInput& input)
     if (!result.windows.empty())
         table.print(std::cout);
     std::cout << '\n';
-    printLines(format("Noise of a pixel coordinate: %.4f px here, %.4f px in the calibration. False alarms: %g%s.", result.sigmaSeen,
-                      input.sigma, o.falseAlarm, o.hasHistory() ? ", of the charts and this check together" : ""));
+    const std::string known = o.isOfScene() ? "" : format(", %.4f px in the calibration", input.sigma);
+    printLines(format("Noise of a pixel coordinate: %.4f px here", result.sigmaSeen) + known
+               + format(". False alarms: %g%s.", o.falseAlarm, o.hasHistory() ? ", of the charts and this check together" : ""));
 }
 
 //! A check among all others of its calibration.
@@ -408,7 +532,7 @@ public:
         record_ = recordOf(check.charted, images.files, time_, history_, images.shown);
         record_.verdict = verdict;
         record_.sigma = check.sigma;
-        record_.dof = input.dof;
+        record_.dof = check.dof;
         if (o_.conditions.isSaid())     // the day's index is no error of the calibration
             for (int c = 0; c < (int)input.rig.cameras.size(); c++)
                 record_.byParameters.col(columnsOf(withWedges(input).rig, c).outerIndex).setZero();
@@ -487,17 +611,18 @@ int refract_check_main(int argc, char** argv)
         Options options = parsed(command, addOptions);
         if (!(options.falseAlarm > 0.))
             options.falseAlarm = options.hasHistory() ? OF_CHARTS : OF_ONE_CHECK;
-        const Target target(options.target);
+        requireOneKind(options);
         const Calibration asCalibrated = readCalibration(options.calibration);
         requireWindows(asCalibrated, options.calibration, false, "");
         warnOfContradictions(asCalibrated, options.calibration, command);
-        requireSameUnit(asCalibrated, target.square(), options.unit);
+        requireSameUnit(asCalibrated, options.isOfScene() ? asCalibrated.square : options.target.square, options.unit);
         requireSerial(options, asCalibrated);
         if (options.placement < 0.)
             options.placement = usualPlacementOf(asCalibrated);
         const Calibration calibration = options.conditions.appliedTo(asCalibrated, options.calibration);
         std::vector<std::string> inputs = options.images.all();
         inputs.insert(inputs.end(), {options.calibration, command.settings()});
+        inputs.insert(inputs.end(), options.scene.begin(), options.scene.end());
         checkOutputs({{"--summary", options.summary, OUTPUT_TEXT}, {"--history", options.history, OUTPUT_TEXT},
                       {"--history-page", options.pageFile(), OUTPUT_TEXT}}, inputs);
         std::unique_ptr<KeptCheck> kept;
@@ -507,11 +632,19 @@ int refract_check_main(int argc, char** argv)
             for (const std::string& sentence : kept->broken())
                 command.warn("'" + options.history + "' is not as it was written: " + sentence);
         CheckInput input = inputOf(options, calibration);
-        const NewImages images = readViews(options, calibration, target, command);
+        NewImages images;
+        SceneImages scene;
+        if (options.isOfScene())
+        {
+            scene = readScene(options, calibration, command);
+            images.files = scene.files;
+        }
+        else
+            images = readViews(options, calibration, Target(options.target), command);
         if (kept)
             kept->requireNewImages(images);
-        addPlacement(options.placement, images.views, input);
-        const CheckResult result = checkRig(input, images.views, options.falseAlarmOfCheck(), calibration.unit);
+        const CheckResult result = options.isOfScene() ? checkMatches(options, scene.matches, calibration, input)
+                                                       : checkViews(options, images.views, calibration, input);
         const std::string why = whyNot(result, options, input);
         std::string verdict = verdictOf(result, why);
         bool isAlarm = result.changed;
@@ -543,6 +676,8 @@ int refract_check_main(int argc, char** argv)
             if (options.conditions.isSaid())
                 std::cout << options.conditions.notice(asCalibrated) << "\n\n";
             print(result, options, input);
+            if (options.isOfScene())
+                printScene(scene.matches);
             if (kept)
                 kept->print();
         }

@@ -195,18 +195,6 @@ private:
     bool needsColour_;
 };
 
-cv::Vec2d givenRange(const Options& options, const Calibration& rig)
-{
-    const cv::Vec2d range = parseDepthRange(options.depth, "--depth");
-    if (!isBeyondWindows(rig, range[1]))
-        throw Failure("--depth=" + options.depth + ": that is before or in the window of camera 1; give z of the scene beyond "
-                      "it, in the unit of the calibration");
-    if (!isBeyondWindows(rig, range[0]))
-        throw Failure("--depth=" + options.depth + format(": NEAR=%g is before or in the window of camera 1; give z of the scene "
-                      "beyond it", range[0]));
-    return range;
-}
-
 //! From several pairs, as a scene may change.
 cv::Vec2d foundRange(const Calibration& rig, PairReader& reader, const std::vector<FramePair>& pairs, const Command& command)
 {
@@ -478,7 +466,7 @@ int refract_stereo_main(int argc, char** argv)
                 camera.camera->setImageSize(images.first.size());
         const cv::Mat truth = options.truth.empty() ? cv::Mat() : readTrueDepth(options.truth, images.first.size());
         Tool tool(options, rig, options.depth.empty() ? foundRange(rig, reader, frames.pairs, command)
-                                                      : givenRange(options, rig));
+                                                      : givenDepthRange(options.depth, rig));
         if (!command.quiet())
             sayColour(options, rig, images.first.channels() == 3);
         std::vector<PairResult> results, refused;

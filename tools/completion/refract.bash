@@ -25,4 +25,4 @@ _refract()
     fi
 }
 complete -F _refract refract_accept refract_board refract_bundle refract_calib refract_check refract_epilines refract_export refract_laser \
-    refract_measure refract_simulate refract_stereo refract_undistort
+    refract_match refract_measure refract_simulate refract_stereo refract_undistort

@@ -276,6 +276,7 @@ private:
         const double range = WIDE*depth_;
         add(c == 0 ? "camera 1 turned about its own centre by" : format("R of camera %d (turned about its own centre) changed by", c + 1),
             c, {angle(3)}, [c](RigModel& rig, const VectorXd& d) { moveCamera(rig, c, {rotationMatrix(first3(d)), Vec3d()}); });
+        rows.back().isTurn = true;
         chart(c == 0 ? "R of camera 1" : "R of " + camera, {"x", "y", "z"});
         add(c == 0 ? "camera 1 shifted by" : "T of " + camera + " changed by", c, {length(3, range)},
             [c](RigModel& rig, const VectorXd& d) { moveCamera(rig, c, {Matx33d::eye(), first3(d)}); });
@@ -287,6 +288,7 @@ private:
         add("R of " + camera + " alone (T as it was" + (count_ == 2 ? ": camera 1 turned about its own centre" : "") + ") changed by", c,
             {angle(3)}, [c](RigModel& rig, const VectorXd& d) {
                 rig.extrinsics[c].R = rotationMatrix(first3(d))*rig.extrinsics[c].R; });
+        rows.back().isTurn = count_ == 2;
         const double baseLine = norm(rig_.extrinsics[c].T);
         if (baseLine > 0.)
             add(format("base line (length of T of camera %d) changed by", c + 1), c, {length(1, WIDE*baseLine)},

@@ -30,6 +30,7 @@ struct Change
     bool isTilt = false;        //!< of the window of that camera
     bool isShift = false;       //!< of the centre of its dome or tube
     bool isOfAnotherPane = false;       //!< thickness, index, wedge: one that stays where it is keeps them
+    bool isTurn = false;        //!< of that camera about its own centre
     //! What may also come slowly, of heat, load or age, has a control chart (history/): its name; empty: none.
     std::string chart = "";
     std::vector<std::string> axes = {};     //!< of its parameters in that chart

@@ -39,15 +39,6 @@ MatrixXd leftInverseOf(const MatrixXd& L)
     return pseudoInverse(inverse.asDiagonal()*L)*inverse.asDiagonal();
 }
 
-void move(ViewObservations& observed, const VectorXd& pose)
-{
-    for (int i = 0; i < 3; i++)
-    {
-        observed.rvec[i] += pose[i];
-        observed.tvec[i] += pose[3 + i];
-    }
-}
-
 } // namespace
 
 //! One linearisation: residuals and derivatives, as they are and with the poses projected out.
@@ -56,7 +47,8 @@ struct CheckProblem::Rows
     struct OfView
     {
         VectorXd residual;
-        MatrixXd byQ, byDelta, byPose;
+        MatrixXd byQ, byDelta;
+        UnknownsOfView unknowns;
     };
     std::vector<OfView> views;
     VectorXd residual;
@@ -73,15 +65,23 @@ struct CheckProblem::Normal
     VectorXd gradient;
 };
 
-CheckProblem::CheckProblem(const CheckInput& input, const std::vector<View>& views, double sigma)
-    : input_(input.rig.targetCovariance.empty() ? withTargetColumns(input, Mat()) : input), sigma_(sigma),
-      parameters_(parametersOf(input_.rig)), root_(rootOf(toEigen(input_.covariance)))
+static std::vector<ViewObservations> observationsOf(const RigModel& rig, const std::vector<View>& views)
 {
+    std::vector<ViewObservations> all;
     for (const View& view : views)
-    {
-        views_.push_back(observationsOf(input_.rig, view));
-        observations_ += (int)views_.back().pixels.size() - 6;
-    }
+        all.push_back(observationsOf(rig, view));
+    return all;
+}
+
+CheckProblem::CheckProblem(const CheckInput& input, const std::vector<View>& views, double sigma)
+    : CheckProblem(input, observationsOf(input.rig, views), sigma) {}
+
+CheckProblem::CheckProblem(const CheckInput& input, const std::vector<ViewObservations>& views, double sigma)
+    : input_(input.rig.targetCovariance.empty() ? withTargetColumns(input, Mat()) : input), sigma_(sigma),
+      parameters_(parametersOf(input_.rig)), root_(rootOf(toEigen(input_.covariance))), views_(views)
+{
+    for (const ViewObservations& view : views_)
+        observations_ += (int)view.pixels.size() - view.unknowns();
 }
 
 RigModel CheckProblem::rigOf(const VectorXd& q, const Change* change, const VectorXd& delta) const
@@ -117,20 +117,20 @@ CheckProblem::Rows CheckProblem::linearise(const RigModel& rig, const std::vecto
     for (const ViewObservations& observed : views)
     {
         const ViewDerivatives view = differentiateView(rig, observed.objectPoints, observed.rvec, observed.tvec, observed.images);
-        Rows::OfView of{observed.pixels - view.predicted, product(view.byParameters, root_), product(view.byParameters, byDelta),
-                        view.byPose};
-        rows.squares += of.residual.squaredNorm();
-        if (!of.residual.allFinite() || !of.byPose.allFinite())
+        const VectorXd residual = observed.weighed(observed.pixels - view.predicted);
+        const MatrixXd byPose = observed.weighed(view.byPose), byParameters = observed.weighed(view.byParameters);
+        rows.squares += residual.squaredNorm();
+        if (!residual.allFinite() || !byPose.allFinite())
         {
             rows.squares = std::numeric_limits<double>::infinity();
             return rows;
         }
-        const PoseNullSpace project(view.byPose);
-        const int count = (int)of.residual.size() - 6;
-        rows.residual.segment(row, count) = project(of.residual);
-        rows.byQ.middleRows(row, count) = project(of.byQ);
+        const Rows::OfView of{residual, product(byParameters, root_), product(byParameters, byDelta), UnknownsOfView(observed, byPose)};
+        const int count = (int)residual.size() - observed.unknowns();
+        rows.residual.segment(row, count) = of.unknowns.projectedOut(residual);
+        rows.byQ.middleRows(row, count) = of.unknowns.projectedOut(of.byQ);
         if (rows.byDelta.cols() > 0)        // Eigen's blocks want a column
-            rows.byDelta.middleRows(row, count) = project(of.byDelta);
+            rows.byDelta.middleRows(row, count) = of.unknowns.projectedOut(of.byDelta);
         row += count;
         rows.views.push_back(of);
     }
@@ -172,11 +172,10 @@ CheckFit CheckProblem::iterate(const Change* change, const MatrixXd& directions,
         if (!step.allFinite())
             return fit;
         const double before = objective(rows, fit.q);
-        std::vector<VectorXd> poses;
+        std::vector<VectorXd> unknowns;
         for (const Rows::OfView& of : rows.views)
-            poses.push_back(PivotedQR(of.byPose).solve(VectorXd(of.residual - timesVector(of.byQ, step.head(n))
-                                                                - timesVector(of.byDelta, step.tail(k)))));
-        // What is left if the linearisation holds; the rest of the decrease is that of the poses.
+            unknowns.push_back(of.unknowns.solve(of.residual - timesVector(of.byQ, step.head(n)) - timesVector(of.byDelta, step.tail(k))));
+        // What is left if the linearisation holds; the rest of the decrease is that of poses and points.
         const double after = rows.residual.squaredNorm()/(sigma_*sigma_) + fit.q.squaredNorm() - normal.gradient.dot(step);
         fit.covariance = propagated(H.inverse().bottomRightCorner(k, k), directions);
         const CheckFit last = fit;
@@ -190,7 +189,7 @@ CheckFit CheckProblem::iterate(const Change* change, const MatrixXd& directions,
             fit.q += share*step.head(n);
             fit.delta = timesVector(directions, eta);
             for (size_t v = 0; v < fit.views.size(); v++)
-                move(fit.views[v], share*poses[v]);
+                fit.views[v].move(share*unknowns[v]);
             try
             {
                 fit.rig = rigOf(fit.q, change, fit.delta);

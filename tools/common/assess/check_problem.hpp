@@ -8,12 +8,12 @@
 #include "assess/check_input.hpp"
 #include "measure/view_observations.hpp"
 
-/* New images of the target against a calibration:
+/* New images of a target, or of a scene, against a calibration:
 
     pixels - predicted = A dp + B delta + K dpose + noise,     B = A dp/ddelta
 
 p are the calibrated parameters, whose error dp = L q has the calibration's covariance L L^T; delta is what changed since then; the
-boards' poses are free. With the poses projected out, the least squares
+boards' poses are free, and so are all points of a scene. With these projected out, the least squares
 
     chi^2 = |pixels - predicted|^2 / sigma^2 + |q|^2
 
@@ -24,7 +24,7 @@ namespace tools {
 struct CheckFit
 {
     RigModel rig;                               //!< as it is now
-    std::vector<ViewObservations> views;        //!< with their poses
+    std::vector<ViewObservations> views;        //!< with their poses, or points
     VectorXd q, delta;
     MatrixXd covariance;                        //!< of delta
     double chiSquare = 0.;                      //!< infinity: no fit
@@ -33,7 +33,10 @@ struct CheckFit
 class CheckProblem
 {
 public:
-    //! Throws Failure if the pose of a target cannot be found. @param sigma of a pixel coordinate
+    //! @param views with a first estimate of what is unknown of them @param sigma of a usual pixel coordinate
+    CheckProblem(const CheckInput& input, const std::vector<ViewObservations>& views, double sigma);
+
+    //! Of a target; throws Failure if its pose cannot be found.
     CheckProblem(const CheckInput& input, const std::vector<View>& views, double sigma);
 
     //! The calibration as it is. @param iterations enough for it
@@ -59,7 +62,7 @@ public:
     //! The parameters that a change moves, in its ranges, a column each.
     MatrixXd directionsOf(const Change& change) const;
 
-    int observations() const { return observations_; }  //!< without those that the poses take
+    int observations() const { return observations_; }  //!< without those that poses and points take
 
 private:
     struct Rows;

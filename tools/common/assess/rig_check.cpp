@@ -52,23 +52,52 @@ class RigCheck
 {
 public:
     RigCheck(const CheckInput& input, const std::vector<View>& views, double falseAlarm, const std::string& unit)
-        : input_(withWedges(input)), views_(views), falseAlarm_(falseAlarm)
+        : input_(withWedges(input)), views_(views), falseAlarm_(falseAlarm), unit_(unit)
     {
-        result_.critical = falseAlarm;
         requireGlass();
         takeNoise();
-        problem_ = std::make_unique<CheckProblem>(input_, views, result_.sigma);
+        fitUnchanged(std::make_unique<CheckProblem>(input_, views, result_.sigma));
+        conclude();
+    }
+
+    RigCheck(const CheckInput& input, const ViewObservations& scene, double falseAlarm, const std::string& unit)
+        : input_(withWedges(input)), falseAlarm_(falseAlarm), unit_(unit), isScene_(true)
+    {
+        result_.sigma = input.sigma;
+        const int ROUNDS = 2;               // what is known weighs more or less, as the noise is
+        for (int round = 0; round <= ROUNDS; round++)
+        {
+            fitUnchanged(std::make_unique<CheckProblem>(input_, std::vector<ViewObservations>{scene}, result_.sigma));
+            if (round < ROUNDS)
+                takeNoiseOfScene();
+        }
+        conclude();
+    }
+
+    const CheckResult& result() const { return result_; }
+
+private:
+    void fitUnchanged(std::unique_ptr<CheckProblem> problem)
+    {
+        problem_ = std::move(problem);
         unchanged_ = problem_->fitUnchanged();
-        changes_ = changesOf(input_.rig, unit, middleOfBoards());
-        testAll();
+        changes_ = changesOf(input_.rig, unit_, middleOfPoints());
+        if (std::isfinite(unchanged_.chiSquare))
+            information_ = problem_->information(changes_, unchanged_);
+    }
+
+    void conclude()
+    {
+        result_.critical = falseAlarm_;
+        if (information_.G.size() > 0)
+            testAll();
         decide();
         if (result_.changed)
             name();
         addWindows();
+        addTurns();
     }
-    const CheckResult& result() const { return result_; }
 
-private:
     void requireGlass() const
     {
         for (const View& view : views_)
@@ -89,7 +118,30 @@ private:
         result_.dof = isNoisier ? here.dof : input_.dof;
     }
 
-    Vec3d middleOfBoards() const
+    /* What all changes of the table together leave, as far as the images tell of them: the F test of each has this noise, which none of
+    them is in. */
+    void takeNoiseOfScene()
+    {
+        if (information_.G.size() == 0)
+            return;
+        const SymmetricEigen eigen(information_.G);
+        const VectorXd along = transposeTimesVector(eigen.vectors, information_.score);
+        double gain = 0.;
+        int told = 0;
+        for (Eigen::Index i = 0; i < along.size(); i++)
+            if (eigen.values[i] > 1./(TOLD*TOLD))
+            {
+                gain += along[i]*along[i]/eigen.values[i];
+                told++;
+            }
+        result_.dof = problem_->observations() - told;
+        if (!(result_.dof > 0.))
+            throw Failure(format("%d matches are too few to tell %d numbers of what may have changed", problem_->observations(), told));
+        result_.sigma *= std::sqrt((unchanged_.chiSquare - gain)/result_.dof);
+        result_.noiseHere = result_.sigma;
+    }
+
+    Vec3d middleOfPoints() const
     {
         Vec3d sum;
         int count = 0;
@@ -104,11 +156,6 @@ private:
 
     void testAll()
     {
-        if (!std::isfinite(unchanged_.chiSquare))
-            return;
-        information_ = problem_->information(changes_, unchanged_);
-        if (information_.G.size() == 0)
-            return;
         std::vector<TestedDirections> all;
         int first = 0;
         for (const Change& change : changes_)
@@ -178,7 +225,7 @@ private:
     {
         const double residuals = probabilityOfResiduals(unchanged_.chiSquare, 0);
         result_.sigmaSeen = result_.sigma*std::sqrt(unchanged_.chiSquare/problem_->observations());
-        result_.changed = residuals < SHARE_OF_RESIDUALS*falseAlarm_;
+        result_.changed = !isScene_ && residuals < SHARE_OF_RESIDUALS*falseAlarm_;
         for (const Tested& tested : tested_)
             result_.changed |= tested.probability < result_.critical;
     }
@@ -261,13 +308,19 @@ private:
 
     void name()
     {
+        double largest = 0.;
+        for (const Tested& tested : tested_)
+            largest = std::max(largest, tested.gain);
+        // A scene has thousands of points: what gains far less, to first order, is not fitted.
+        const double FAR_LESS = 0.5;
         for (Tested& tested : tested_)
-            fitOf(tested);
+            if (!isScene_ || tested.gain > FAR_LESS*largest)
+                fitOf(tested);
         for (const Tested& tested : tested_)
             addCandidate(tested);
-        addUndone(unrelatedImages(input_.rig, views_));
+        addUndone(isScene_ ? std::vector<Undone>() : unrelatedImages(input_.rig, views_));
         // Also where a change explains all: of a camera in the middle of its images, mirrored ones look like a window mirrored.
-        if (!(unchanged_.chiSquare < GROSS*GROSS*problem_->observations()))
+        if (!isScene_ && !(unchanged_.chiSquare < GROSS*GROSS*problem_->observations()))
             addUndone(swappedImages(input_.rig, views_));
         dropNested();
         rankThem();
@@ -318,6 +371,26 @@ private:
         }
     }
 
+    //! The covariance of the linear test, which holds whatever was found.
+    MatrixXd covarianceOf(const Tested& tested) const
+    {
+        const MatrixXd ranges = tested.change->ranges().asDiagonal();
+        const int n = tested.at.count();
+        return product(product(ranges, inverse(information_.G.block(tested.at.first, tested.at.first, n, n))), ranges);
+    }
+
+    void addTurns()
+    {
+        for (const Tested& tested : tested_)
+        {
+            const Change& change = *tested.change;
+            if (!change.isTurn || tested.at.count() < change.size())
+                continue;
+            const double variance = SymmetricEigen(covarianceOf(tested)).values.maxCoeff();
+            result_.turns.push_back({change.name, change.camera, std::sqrt(variance)*DEGREES, tested.at.count(), tested.probability});
+        }
+    }
+
     WindowCheck windowOf(const Tested& tested) const
     {
         const int c = tested.change->camera;
@@ -334,11 +407,8 @@ private:
         check.lengthPerDegree = tested.change->isShift ? window.radius/DEGREES : 0.;
         check.chart = tested.change->chart;
         const double degrees = tested.change->isShift ? DEGREES/window.radius : DEGREES;
-        // The covariance of the linear test, which holds whatever was found.
-        const MatrixXd ranges = tested.change->ranges().asDiagonal();
         const int n = check.parameters;
-        const MatrixXd V = product(product(ranges, inverse(information_.G.block(tested.at.first, tested.at.first, n, n))), ranges);
-        const VectorXd variances = SymmetricEigen(V).values;
+        const VectorXd variances = SymmetricEigen(covarianceOf(tested)).values;
         check.stdDeg[0] = std::sqrt(variances[n - 1])*degrees;
         check.stdDeg[1] = std::sqrt(variances[n - 2])*degrees;
         if (!isSeen || !std::isfinite(tested.fit.chiSquare))
@@ -350,8 +420,10 @@ private:
     }
 
     CheckInput input_;
-    const std::vector<View>& views_;
+    const std::vector<View> views_ = {};        // of boards
     const double falseAlarm_;
+    const std::string unit_;
+    const bool isScene_ = false;
     CheckResult result_;
     std::unique_ptr<CheckProblem> problem_;
     CheckFit unchanged_;
@@ -366,6 +438,11 @@ private:
 CheckResult checkRig(const CheckInput& input, const std::vector<View>& views, double falseAlarm, const std::string& unit)
 {
     return RigCheck(input, views, falseAlarm, unit).result();
+}
+
+CheckResult checkScene(const CheckInput& input, const ViewObservations& scene, double falseAlarm, const std::string& unit)
+{
+    return RigCheck(input, scene, falseAlarm, unit).result();
 }
 
 std::string causesIn(const CheckResult& result)
@@ -396,10 +473,19 @@ std::string causesOf(const Calibration& calibration, const std::vector<View>& vi
     }
 }
 
+static double powerOf(double degrees, double variance, int parameters, const CheckResult& result)
+{
+    return upperTailNoncentralF(parameters, result.dof, degrees*degrees/variance, quantileF(parameters, result.dof, result.critical));
+}
+
 double powerOf(const WindowCheck& window, const CheckResult& result, double tiltDeg, double share)
 {
-    const double lambda = tiltDeg*tiltDeg/(share*window.stdDeg[0]*window.stdDeg[0]);
-    return upperTailNoncentralF(window.parameters, result.dof, lambda, quantileF(window.parameters, result.dof, result.critical));
+    return powerOf(tiltDeg, share*window.stdDeg[0]*window.stdDeg[0], window.parameters, result);
+}
+
+double powerOf(const TurnCheck& turn, const CheckResult& result, double turnDeg, double share)
+{
+    return powerOf(turnDeg, share*turn.stdDeg*turn.stdDeg, turn.parameters, result);
 }
 
 } // namespace tools

@@ -7,9 +7,10 @@
 #include "assess/change.hpp"
 #include "assess/check_input.hpp"
 #include "calibrate/rig_data.hpp"
+#include "measure/view_observations.hpp"
 #include <limits>
 
-/* Has anything changed since the calibration, and what? From a few new images of the target. Each hypothesis of the table
+/* Has anything changed since the calibration, and what? From a few new images of the target, or of a scene. Each hypothesis of the table
 (change.hpp) is freed alone; under "nothing changed" its gain in chi^2 follows F. If one of them is less probable than all of them
 together ever are at the rate of false alarms, something has changed. What it is, Schwarz's criterion tells (ranking.hpp). */
 namespace tools {
@@ -32,6 +33,16 @@ struct WindowCheck
 };
 
 //! A change that explains the new images.
+//! Of a camera against the others.
+struct TurnCheck
+{
+    std::string name;           //!< of the change
+    int camera;
+    double stdDeg;              //!< of the turn, about the axis about which it is known least
+    int parameters;             //!< of the change
+    double probability;         //!< of so large a turn or a larger one if nothing changed
+};
+
 struct NamedChange
 {
     std::string name, sentence;     //!< the name alone, and with its values
@@ -58,6 +69,7 @@ struct CheckResult
     std::vector<NamedChange> changes;
     bool explained = true;              //!< the best leaves no more than noise
     std::vector<WindowCheck> windows;   //!< of the cameras that have a glass image; of a shared window the first
+    std::vector<TurnCheck> turns;       //!< of all cameras whose turns the images tell
     double sigma;                       //!< of a pixel coordinate that the test took
     double sigmaSeen;                   //!< of the new images, the best change made
     double dof;                         //!< of sigma
@@ -70,6 +82,10 @@ struct CheckResult
 //! Throws Failure if no view has an image through a window, or a target's pose cannot be found. @param unit of lengths, for the texts
 CheckResult checkRig(const CheckInput& input, const std::vector<View>& views, double falseAlarm, const std::string& unit = "");
 
+/** The same by points of a scene. How noisy their pixels are, they tell themselves: by what no change of the table explains.
+@param scene of which the points are unknown */
+CheckResult checkScene(const CheckInput& input, const ViewObservations& scene, double falseAlarm, const std::string& unit);
+
 //! "a; or b", the best three.
 std::string causesIn(const CheckResult& result);
 
@@ -80,6 +96,7 @@ std::string causesOf(const Calibration& calibration, const std::vector<View>& vi
 /** Probability that a tilt of this size, in the direction in which it shows least, is found.
 @param share of the covariance: 1/2 for twice as many images */
 double powerOf(const WindowCheck& window, const CheckResult& result, double tiltDeg, double share = 1.);
+double powerOf(const TurnCheck& turn, const CheckResult& result, double turnDeg, double share = 1.);
 
 } // namespace tools
 

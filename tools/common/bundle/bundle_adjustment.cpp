@@ -107,8 +107,8 @@ int countKnown(const BundleStart& start)
     return count;
 }
 
-//! The pixels' standard deviation, and the degrees of freedom that tell it; lengths and what was known are equations, too.
-void setNoise(const BundleStart& start, const GivenLengths& lengths, BundleAdjustment& result)
+//! The standard deviation of a usual pixel, and the degrees of freedom that tell it; lengths and what was known are equations, too.
+void setNoise(const BundleStart& start, const GivenLengths& lengths, double squaredPixels, BundleAdjustment& result)
 {
     Fit& fit = result.fit;
     int lengthCount = 0;
@@ -116,8 +116,8 @@ void setNoise(const BundleStart& start, const GivenLengths& lengths, BundleAdjus
     const double ofPrior = squaredPrior(start, fit.rig);
     const int free = (int)(estimatedWindowParameters(fit).size() + estimatedRigParameters(fit).size());
     fit.dof = 2.*result.usedPixels + lengthCount + countKnown(start) - 3.*result.answers() - free;
-    const double pixels = fit.rms*fit.rms*result.usedPixels, left = fit.dof - ofLengths - ofPrior;
-    fit.sigma = std::sqrt(pixels/std::max(left, 1.));
+    const double left = fit.dof - ofLengths - ofPrior;
+    fit.sigma = std::sqrt(squaredPixels/std::max(left, 1.));
 }
 
 void setPoints(const Matches& matches, const Mat& points3D, const Mat& deviations, const std::vector<Mat>& inliers,
@@ -144,9 +144,12 @@ void setPoints(const Matches& matches, const Mat& points3D, const Mat& deviation
     }
 }
 
-std::vector<double> rmsOfCameras(const Matches& matches, const BundleAdjustment& result)
+//! RMS of each camera. @param weighted squares of all, of each over its relative variance
+std::vector<double> rmsOfCameras(const Matches& matches, const BundleAdjustment& result, double& weighted)
 {
     std::vector<double> all;
+    const double usual = matches.usualStd();
+    weighted = 0.;
     for (int c = 0; c < matches.cameraCount(); c++)
     {
         std::vector<Point2d> modelled;
@@ -157,10 +160,30 @@ std::vector<double> rmsOfCameras(const Matches& matches, const BundleAdjustment&
         for (size_t i = 0; i < modelled.size(); i++)
             if (result.used[c][i] && seen(modelled[i]))
             {
-                squares += std::pow(norm(modelled[i] - matches.pixels[c][i]), 2);
+                const double square = std::pow(norm(modelled[i] - matches.pixels[c][i]), 2);
+                squares += square;
+                weighted += matches.stds.empty() ? square : square*std::pow(usual/matches.stds[c][i], 2);
                 count++;
             }
         all.push_back(count ? std::sqrt(squares/count) : -1.);
+    }
+    return all;
+}
+
+//! As refractiveBundleAdjust takes them; empty: all pixels are alike.
+std::vector<std::vector<Mat>> covariancesOf(const Matches& matches)
+{
+    std::vector<std::vector<Mat>> all;
+    const double usual = matches.usualStd();
+    for (int c = 0; c < (int)matches.stds.size(); c++)
+    {
+        Mat_<Vec3d> covariances((int)matches.names.size(), 1);
+        for (int i = 0; i < covariances.rows; i++)
+        {
+            const double variance = std::pow(matches.stds[c][i]/usual, 2);
+            covariances(i) = Vec3d(variance, 0., variance);
+        }
+        all.push_back({covariances});
     }
     return all;
 }
@@ -200,8 +223,8 @@ BundleAdjustment adjustBundle(const BundleStart& start, const Matches& matches, 
     {
         fit.rms = refractiveBundleAdjust(pixels, fit.rig.cameras, fit.rig.windows, Rs, Ts, noArray(), noArray(), points3D, lengths.rows(),
                                          fit.stdDeviations, fit.covariance, deviations, noArray(), inliers,
-                                         start.flags | (robust ? GLASS_ROBUST : 0), noArray(), criteria, noArray(), {}, start.covariance,
-                                         lengths.commonStd());
+                                         start.flags | (robust ? GLASS_ROBUST : 0), noArray(), criteria, noArray(), covariancesOf(matches),
+                                         start.covariance, lengths.commonStd());
     }
     catch (const CalibrationError& e)
     {
@@ -214,8 +237,9 @@ BundleAdjustment adjustBundle(const BundleStart& start, const Matches& matches, 
     for (int c = 1; c < matches.cameraCount(); c++)
         fit.rig.extrinsics[c] = {Rs[c], Ts[c]};
     setPoints(matches, points3D, deviations, inliers, result);
-    result.rmsOfCamera = rmsOfCameras(matches, result);
-    setNoise(start, lengths, result);
+    double squaredPixels;
+    result.rmsOfCamera = rmsOfCameras(matches, result, squaredPixels);
+    setNoise(start, lengths, squaredPixels, result);
     return result;
 }
 

@@ -19,6 +19,8 @@ namespace {
 
 std::string pixelColumn(const char* coordinate, int camera) { return coordinate + std::to_string(camera + 1); }
 
+std::string stdColumn(int camera) { return "std" + std::to_string(camera + 1); }
+
 //! A column that is misspelt would be left out without a word.
 void requireKnownColumns(const CsvTable& table, const std::string& path, const std::set<std::string>& known, const std::string& what)
 {
@@ -39,8 +41,24 @@ CsvTable openMatches(const std::string& path, int cameras, const std::string& st
                              cameras));
     std::set<std::string> known(required.begin(), required.end());
     known.insert({"image", "x", "y", "z", "sx", "sy", "sz", "status"});
-    requireKnownColumns(table, path, known, "an optional image, id, and u1,v1,u2,v2,... are wanted, and what else refract_measure writes");
+    for (int c = 0; c < cameras; c++)
+        known.insert(stdColumn(c));
+    requireKnownColumns(table, path, known, "an optional image, id, and u1,v1,u2,v2,... are wanted, std1,std2,... and what else "
+                        "refract_match and refract_measure write");
+    for (int c = 1; c < cameras; c++)
+        if ((table.find(stdColumn(c)) >= 0) != (table.find(stdColumn(0)) >= 0))
+            throw Failure("'" + path + "' has the standard deviations of some cameras only: give std1,std2,... of all, or of none");
     return table;
+}
+
+//! Of a pixel that was seen.
+double readStd(const CsvTable& table, const CsvTable::Row& row, int camera, const cv::Point2d& pixel)
+{
+    const double std = table.numberOrNone(row, stdColumn(camera));
+    if (seen(pixel) && !(std > 0 && std::isfinite(std)))
+        throw Failure(table.where(row) + ": " + stdColumn(camera) + format(" is %g; the standard deviation of a pixel that was seen must "
+                                                                           "be more than 0", std));
+    return std;
 }
 
 //! Where it is no pixel of the camera, the columns are not those of the camera, or not raw.
@@ -75,6 +93,20 @@ int Matches::seenBy(int point) const
     return count;
 }
 
+double Matches::usualStd() const
+{
+    double squares = 0.;
+    int count = 0;
+    for (size_t c = 0; c < stds.size(); c++)
+        for (size_t i = 0; i < stds[c].size(); i++)
+            if (isSeen((int)c, (int)i))
+            {
+                squares += stds[c][i]*stds[c][i];
+                count++;
+            }
+    return count ? std::sqrt(squares/count) : 0.;
+}
+
 Matches readMatches(const std::string& path, const Calibration& start, const std::string& startPath)
 {
     const int cameras = (int)start.cameras.size();
@@ -84,6 +116,7 @@ Matches readMatches(const std::string& path, const Calibration& start, const std
     const CsvTable table = openMatches(path, cameras, startPath);
     Matches matches;
     matches.pixels.resize(cameras);
+    matches.stds.resize(table.find(stdColumn(0)) >= 0 ? cameras : 0);
     std::map<PointName, int> lines;
     const bool hasImages = table.find("image") >= 0;
     for (const CsvTable::Row& row : table.rows())
@@ -98,6 +131,8 @@ Matches readMatches(const std::string& path, const Calibration& start, const std
         {
             matches.pixels[c].push_back(table.pixelOrNone(row, pixelColumn("u", c), pixelColumn("v", c)));
             requireInside(matches.pixels[c].back(), start.cameras[c].camera->imageSize(), table.where(row), c);
+            if (!matches.stds.empty())
+                matches.stds[c].push_back(readStd(table, row, c, matches.pixels[c].back()));
         }
     }
     requireCommonPoints(matches, path);

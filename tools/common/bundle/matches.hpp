@@ -23,13 +23,17 @@ struct Matches
 {
     std::vector<PointName> names;
     RigPixels pixels;               //!< per camera, per point; NaN: not seen
+    std::vector<std::vector<double>> stds = {};     //!< of a coordinate of each pixel; empty: all are alike
 
     int cameraCount() const { return (int)pixels.size(); }
     int seenBy(int point) const;    //!< how many cameras saw it
+    bool isSeen(int camera, int point) const { return pixels[camera][point].x == pixels[camera][point].x; }
+    //! RMS of the stds of all pixels seen; 0: not known.
+    double usualStd() const;
 };
 
-/** matches.csv: [image,]id,u1,v1,u2,v2,...; refract_measure's points.csv will do. Throws Failure that names file and line, also
-where a pixel is outside its image, and where the cameras have nothing in common. */
+/** matches.csv: [image,]id,u1,v1,u2,v2,...[,std1,std2,...]; refract_measure's points.csv will do. Throws Failure that names
+file and line, also where a pixel is outside its image, and where the cameras have nothing in common. */
 Matches readMatches(const std::string& path, const Calibration& start, const std::string& startPath);
 
 struct GivenLength

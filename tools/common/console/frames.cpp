@@ -177,35 +177,50 @@ cv::Mat Frames::readVideo(int i)
     return image.clone();       // the next one may take its place
 }
 
+std::vector<Moment> momentsOf(const std::vector<const Frames*>& cameras)
+{
+    const int count = (int)cameras.size();
+    const bool single = std::all_of(cameras.begin(), cameras.end(), [](const Frames* frames) { return frames->size() == 1; });
+    std::map<std::string, std::vector<int>> byStem;
+    std::vector<std::vector<std::string>> names;
+    for (const Frames* frames : cameras)
+        names.push_back(namesOf(*frames));
+    takeOffCameras(names);
+    for (int c = 0; c < count; c++)
+    {
+        for (int k = 0; k < c; k++)
+        {
+            if (cameras[k]->isVideo() && cameras[c]->isVideo())
+                refuseOneFile(cameras[k]->source(), cameras[c]->source());
+            requireEqualLength(*cameras[k], *cameras[c]);
+        }
+        for (const auto& image : indexOf(names[c], *cameras[c]))
+            byStem.insert({single ? cameras[0]->stem(0) : image.first, std::vector<int>(count, -1)}).first->second[c] = image.second;
+    }
+    std::vector<Moment> moments;
+    for (const auto& moment : byStem)
+        moments.push_back({moment.first, moment.second});
+    for (const Moment& moment : moments)
+        for (int c = 0; c < count; c++)
+            for (int k = 0; k < c; k++)
+                if (moment.frames[c] >= 0 && moment.frames[k] >= 0 && !cameras[c]->isVideo() && !cameras[k]->isVideo())
+                    refuseOneFile(cameras[k]->files()[moment.frames[k]], cameras[c]->files()[moment.frames[c]]);
+    return moments;
+}
+
 FramePairs pairsOf(const Frames& first, const Frames& second)
 {
     FramePairs result;
-    if (first.isVideo() && second.isVideo())
-        refuseOneFile(first.source(), second.source());
-    requireEqualLength(first, second);
-    if (first.size() == 1 && second.size() == 1)        // a pair whatever the names
-        result.pairs = {{first.stem(0), 0, 0}};
-    else
-    {
-        std::vector<std::vector<std::string>> names = {namesOf(first), namesOf(second)};
-        takeOffCameras(names);
-        const std::map<std::string, int> partners = indexOf(names[1], second);
-        for (const auto& image : indexOf(names[0], first))
-            if (partners.count(image.first))
-                result.pairs.push_back({image.first, image.second, partners.at(image.first)});
-            else
-                result.unpaired1.push_back(image.first);
-        for (const auto& image : partners)
-            if (std::none_of(result.pairs.begin(), result.pairs.end(), [&](const FramePair& pair) {
-                    return pair.second == image.second; }))
-                result.unpaired2.push_back(image.first);
-    }
+    for (const Moment& moment : momentsOf({&first, &second}))
+        if (moment.frames[1] < 0)
+            result.unpaired1.push_back(moment.stem);
+        else if (moment.frames[0] < 0)
+            result.unpaired2.push_back(moment.stem);
+        else
+            result.pairs.push_back({moment.stem, moment.frames[0], moment.frames[1]});
     if (result.pairs.empty())
         throw Failure("no image of '" + first.source() + "' has the name of one of '" + second.source()
                       + "': images of one moment need equal names");
-    for (const FramePair& pair : result.pairs)
-        if (!first.isVideo() && !second.isVideo())
-            refuseOneFile(first.files()[pair.first], second.files()[pair.second]);
     return result;
 }
 

@@ -46,6 +46,17 @@ private:
 };
 
 //! Two images of one moment.
+//! What several cameras took at one moment.
+struct Moment
+{
+    std::string stem;
+    std::vector<int> frames;        //!< per camera; -1: none
+};
+
+/** Frames of several cameras by their number, images by their stem; single images are of one moment whatever their names. Throws
+Failure if two videos are of different length, or if an image is given for two cameras. */
+std::vector<Moment> momentsOf(const std::vector<const Frames*>& cameras);
+
 struct FramePair
 {
     std::string stem;
@@ -58,8 +69,7 @@ struct FramePairs
     std::vector<std::string> unpaired1, unpaired2;  //!< stems without partner
 };
 
-/** Frames by their number, images by their stem; single images are a pair whatever their names. Throws Failure if there is no
-pair, if two videos are of different length, or if both images of a pair are one file. */
+//! The moments of two cameras that have both; throws Failure also if there are none.
 FramePairs pairsOf(const Frames& first, const Frames& second);
 
 //! 8 bits each, as matchers want them; more bits of both are made brighter or darker by one factor.

@@ -8,6 +8,7 @@
 
 using namespace cv;
 using namespace cv::refract;
+using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 namespace tools {
@@ -64,14 +65,87 @@ ViewDerivatives refinePose(const RigModel& rig, ViewObservations& observed)
     for (int i = 0; i < ITERATIONS; i++)
     {
         const VectorXd step = PivotedQR(derivatives.byPose).solve(VectorXd(observed.pixels - derivatives.predicted));
-        for (int k = 0; k < 3; k++)
-        {
-            observed.rvec[k] += step[k];
-            observed.tvec[k] += step[3 + k];
-        }
+        observed.move(step);
         derivatives = differentiateView(rig, observed.objectPoints, observed.rvec, observed.tvec, observed.images);
     }
     return derivatives;
+}
+
+MatrixXd ViewObservations::weighed(const MatrixXd& rows) const
+{
+    if (noise.size() == 0)
+        return rows;
+    return rows.array().colwise()/noise.array();
+}
+
+void ViewObservations::move(const VectorXd& step)
+{
+    for (int i = 0; i < 3 && !isScene; i++)
+    {
+        rvec[i] += step[i];
+        tvec[i] += step[3 + i];
+    }
+    for (size_t i = 0; isScene && i < objectPoints.size(); i++)
+        objectPoints[i] += Point3d(step[3*i], step[3*i + 1], step[3*i + 2]);
+}
+
+//! These rows, in this order.
+static MatrixXd rowsOf(const MatrixXd& all, const std::vector<int>& rows)
+{
+    MatrixXd part(rows.size(), all.cols());
+    for (size_t i = 0; i < rows.size(); i++)
+        part.row(i) = all.row(rows[i]);
+    return part;
+}
+
+UnknownsOfView::UnknownsOfView(const ViewObservations& observed, const MatrixXd& byPose)
+{
+    std::vector<std::vector<int>> rows(observed.isScene ? observed.objectPoints.size() : 1);
+    int row = 0;
+    for (const ImageOfView& image : observed.images)
+        for (int point : image.points)
+        {
+            std::vector<int>& group = rows[observed.isScene ? point : 0];
+            group.push_back(row++);
+            group.push_back(row++);
+        }
+    for (const std::vector<int>& group : rows)
+        add(group, observed.isScene ? MatrixXd(rowsOf(byPose, group).rightCols(3)) : rowsOf(byPose, group));
+}
+
+void UnknownsOfView::add(const std::vector<int>& rows, const MatrixXd& byUnknowns)
+{
+    groups_.push_back({rows, PoseNullSpace(byUnknowns), PivotedQR(byUnknowns)});
+}
+
+MatrixXd UnknownsOfView::projectedOut(const MatrixXd& rows) const
+{
+    std::vector<MatrixXd> parts;
+    Eigen::Index count = 0;
+    for (const Group& group : groups_)
+    {
+        parts.push_back(group.project(rowsOf(rows, group.rows)));
+        count += parts.back().rows();
+    }
+    MatrixXd all(count, rows.cols());
+    count = 0;
+    for (const MatrixXd& part : parts)
+    {
+        all.middleRows(count, part.rows()) = part;
+        count += part.rows();
+    }
+    return all;
+}
+
+VectorXd UnknownsOfView::solve(const VectorXd& residual) const
+{
+    std::vector<double> step;
+    for (const Group& group : groups_)
+    {
+        const VectorXd part = group.by.solve(VectorXd(rowsOf(residual, group.rows)));
+        step.insert(step.end(), part.data(), part.data() + part.size());
+    }
+    return Eigen::Map<VectorXd>(step.data(), step.size());
 }
 
 } // namespace tools

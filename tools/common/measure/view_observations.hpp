@@ -9,13 +9,46 @@
 
 namespace tools {
 
-//! The observations of one new view, and the current estimate of the board's pose, which is unknown.
+/** The observations of one new view, and the current estimate of what is unknown of it: the pose of a board, or all points of a
+scene. */
 struct ViewObservations
 {
     std::vector<cv::Point3d> objectPoints;
     std::vector<ImageOfView> images;
     Eigen::VectorXd pixels;             //!< in the order of differentiateView
-    cv::Vec3d rvec, tvec;               //!< board -> camera 1
+    cv::Vec3d rvec, tvec;               //!< board -> camera 1; of a scene 0
+    bool isScene = false;               //!< the points are unknown, and the pose is none
+    Eigen::VectorXd noise = {};         //!< of each coordinate over the usual one; empty: all are alike
+
+    int unknowns() const { return isScene ? 3*(int)objectPoints.size() : 6; }
+    //! Rows of coordinates over their noise.
+    Eigen::MatrixXd weighed(const Eigen::MatrixXd& rows) const;
+    //! Moves what is unknown.
+    void move(const Eigen::VectorXd& step);
+};
+
+/** What no change of the unknowns of a view can produce, and which change comes nearest to a residual. Rows and residuals are
+weighed. */
+class UnknownsOfView
+{
+public:
+    //! @param byPose of its derivatives, weighed
+    UnknownsOfView(const ViewObservations& observed, const Eigen::MatrixXd& byPose);
+    //! As many rows as there are coordinates more than unknowns.
+    Eigen::MatrixXd projectedOut(const Eigen::MatrixXd& rows) const;
+    Eigen::VectorXd solve(const Eigen::VectorXd& residual) const;
+
+private:
+    //! Coordinates that share unknowns: all of a board, those of one point of a scene.
+    struct Group
+    {
+        std::vector<int> rows;
+        PoseNullSpace project;
+        cv::refract::PivotedQR by;
+    };
+    void add(const std::vector<int>& rows, const Eigen::MatrixXd& byUnknowns);
+
+    std::vector<Group> groups_;
 };
 
 //! The seen points of one image, after those that are there; an image without any is none.

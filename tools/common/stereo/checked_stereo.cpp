@@ -4,7 +4,7 @@
 #include "stereo/checked_stereo.hpp"
 #include "stereo/depth_search.hpp"
 #include "stereo/depth_picture.hpp"
-#include "stereo/pair_mistakes.hpp"
+#include "match/pair_mistakes.hpp"
 #include "stereo/point_sigma.hpp"
 
 #include <cmath>

@@ -5,10 +5,8 @@
 #include "console/failure.hpp"
 #include "stereo/depth_picture.hpp"
 
-#include <opencv2/features2d.hpp>
 #include <opencv2/imgproc.hpp>
 #include <algorithm>
-#include <set>
 #include <cmath>
 
 namespace tools {
@@ -20,63 +18,9 @@ using cv::Point3d;
 namespace {
 
 const int MOST_DETAILS = 4000;
-const double CLEARLY_NEARER = 0.8;      // than the second best, as Lowe has it
 const double SAME_POINT = 1.5;          // px
 
-struct Details
-{
-    std::vector<cv::KeyPoint> places;
-    Mat descriptors;
-};
-
-Details detailsOf(const Mat& grey, int most)
-{
-    Details details;
-    cv::SIFT::create(most)->detectAndCompute(grey, cv::noArray(), details.places, details.descriptors);
-    return details;
-}
-
-//! For each of `from` the one of `to` that is clearly the most alike; -1: none.
-std::vector<int> bestOf(const Details& from, const Details& to)
-{
-    std::vector<std::vector<cv::DMatch>> matches;
-    cv::BFMatcher(cv::NORM_L2).knnMatch(from.descriptors, to.descriptors, matches, 2);
-    std::vector<int> best(from.places.size(), -1);
-    for (const auto& two : matches)
-        if (two.size() == 2 && two[0].distance < CLEARLY_NEARER*two[1].distance)
-            best[two[0].queryIdx] = two[0].trainIdx;
-    return best;
-}
-
 } // namespace
-
-Partners findPartners(const Mat& grey1, const Mat& grey2, int mostFeatures)
-{
-    Partners partners;
-    const Details first = detailsOf(grey1, mostFeatures), second = detailsOf(grey2, mostFeatures);
-    if (first.places.size() < 2 || second.places.size() < 2)
-        return partners;
-    const std::vector<int> forth = bestOf(first, second), back = bestOf(second, first);
-    std::set<std::pair<float, float>> places;       // a corner of a chessboard is several features, one a direction, but one observation
-    for (size_t i = 0; i < forth.size(); i++)
-        if (forth[i] >= 0 && back[forth[i]] == (int)i && places.emplace(first.places[i].pt.x, first.places[i].pt.y).second)
-        {
-            partners.pixels1.push_back(first.places[i].pt);
-            partners.pixels2.push_back(second.places[forth[i]].pt);
-        }
-    return partners;
-}
-
-bool isBeyondWindows(const Calibration& calibration, double z)
-{
-    if (std::isinf(z))
-        return true;
-    const auto& camera = calibration.cameras[0].camera;
-    const Point2d middle((camera->imageSize().width - 1)/2., (camera->imageSize().height - 1)/2.);
-    std::vector<cv::Vec3d> X;
-    cv::refract::refractivePointsOnPlane(std::vector<Point2d>{middle}, X, camera, cv::Vec4d(0, 0, 1, z));
-    return std::isfinite(X[0][2]);
-}
 
 std::vector<float> depthsOfFeatures(const Calibration& calibration, const Mat& image1, const Mat& image2)
 {

@@ -4,24 +4,11 @@
 #ifndef REFRACT_TOOLS_DEPTH_SEARCH_HPP
 #define REFRACT_TOOLS_DEPTH_SEARCH_HPP
 
-#include "calibrate/calib_file.hpp"
+#include "match/depth_range.hpp"
+#include "match/partners.hpp"
 
 /* The depth range of a scene, from features that are matched in both raw images. */
 namespace tools {
-
-//! What findDepthRange needs at least.
-const int MIN_FEATURES = 30;
-
-//! Pixels of features that choose each other.
-struct Partners
-{
-    std::vector<cv::Point2d> pixels1, pixels2;
-};
-//! @param mostFeatures of each image, the strongest
-Partners findPartners(const cv::Mat& grey1, const cv::Mat& grey2, int mostFeatures);
-
-//! Cameras in which imageSize() is known and a z that their windows leave free.
-bool isBeyondWindows(const Calibration& calibration, double z);
 
 /** z (camera-1 frame) of features matched in both images, whose two rays meet; ascending.
 @param image1, image2 of one moment, 8-bit, grey or colour */

@@ -1,10 +1,10 @@
 // This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
 // SPDX-License-Identifier: Apache-2.0
 
-#include "stereo/pair_mistakes.hpp"
+#include "match/pair_mistakes.hpp"
 #include "calibrate/rig_model.hpp"
 #include "calibrate/window_face.hpp"
-#include "stereo/depth_search.hpp"
+#include "match/partners.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,0 +1,115 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#include "match/moved_rig.hpp"
+#include "assess/change.hpp"
+#include "math/dense.hpp"
+#include "measure/view_derivatives.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace cv;
+using namespace cv::refract;
+
+namespace tools {
+
+namespace {
+
+const double DEGREE = CV_PI/180.;
+
+bool isTurn(const Change& change)
+{
+    return std::all_of(change.quantities.begin(), change.quantities.end(), [](const ChangedQuantity& q) { return q.unit == "degrees"; });
+}
+
+//! The parameters of the rig by the angles of all turns, a column each.
+MatrixXd byTurns(const RigModel& rig)
+{
+    const double STEP = 1e-3;           // cv::Rodrigues takes turns below 1e-5 for none
+    const VectorXd p = parametersOf(rig);
+    std::vector<VectorXd> columns;
+    for (const Change& change : changesOf(rig, "", Vec3d(0, 0, 1)))
+        for (int i = 0; isTurn(change) && i < change.size(); i++)
+        {
+            VectorXd values[2];
+            for (int side : {0, 1})
+            {
+                RigModel moved = rig.clone();
+                change.apply(moved, (side ? STEP : -STEP)*VectorXd::Unit(change.size(), i));
+                values[side] = parametersOf(moved);
+            }
+            columns.push_back((values[1] - values[0])/(2.*STEP));
+        }
+    MatrixXd D(p.size(), columns.size());
+    for (size_t i = 0; i < columns.size(); i++)
+        D.col(i) = columns[i];
+    return D;
+}
+
+//! Points all over what both cameras see.
+std::vector<Point3d> pointsInBoth(const RigModel& rig, int first, int second, const Vec2d& depth)
+{
+    const int STEPS = 6, DEPTHS = 3;
+    const double FAR = 100.;            // times the near end: farther points look as those
+    const Size size = rig.cameras[0]->imageSize();
+    std::vector<Point2d> pixels;
+    for (int i = 0; i <= STEPS; i++)
+        for (int j = 0; j <= STEPS; j++)
+            pixels.push_back(Point2d((size.width - 1)*i/(double)STEPS, (size.height - 1)*j/(double)STEPS));
+    std::vector<Point3d> both;
+    for (int k = 0; k < DEPTHS; k++)
+    {
+        const double far = std::min(depth[1], FAR*depth[0]), share = k/(DEPTHS - 1.);
+        std::vector<Point3d> points, kept;
+        refractivePointsOnPlane(pixels, points, rig.cameras[0], Vec4d(0, 0, 1, 1./((1. - share)/depth[0] + share/far)));
+        std::copy_if(points.begin(), points.end(), std::back_inserter(kept), [](const Point3d& X) { return X.x == X.x; });
+        const std::vector<int> seen1 = pointsInImage(rig, kept, Vec3d(), Vec3d(), first, true).points;
+        const std::vector<int> seen2 = pointsInImage(rig, kept, Vec3d(), Vec3d(), second, true).points;
+        for (int i : seen1)
+            if (std::binary_search(seen2.begin(), seen2.end(), i))
+                both.push_back(kept[i]);
+    }
+    return both;
+}
+
+} // namespace
+
+Mat covarianceOfMoved(const CheckInput& input, double degrees)
+{
+    const MatrixXd D = byTurns(input.rig)*(degrees*DEGREE);
+    MatrixXd C = input.covariance.empty() ? MatrixXd(MatrixXd::Zero(D.rows(), D.rows())) : toEigen(input.covariance);
+    addGram(D.transpose(), 1., C);
+    C.triangularView<Eigen::StrictlyUpper>() = C.transpose();
+    return toMat(C);
+}
+
+double searchWidth(const CheckInput& input, int first, int second, const Vec2d& depth, double degrees)
+{
+    const double MANY = 3., NOISE = 3.;         // standard deviations; px, of features
+    const std::vector<Point3d> points = pointsInBoth(input.rig, first, second, depth);
+    const int count = (int)points.size();
+    std::vector<int> all(count);
+    for (int i = 0; i < count; i++)
+        all[i] = i;
+    const ViewDerivatives view = differentiateView(input.rig, points, Vec3d(), Vec3d(), {{first, true, all}, {second, true, all}});
+    const MatrixXd D = byTurns(input.rig)*(degrees*DEGREE);
+    const MatrixXd C = input.covariance.empty() ? MatrixXd(MatrixXd::Zero(D.rows(), D.rows())) : toEigen(input.covariance);
+    double width = 0.;
+    for (int i = 0; i < count; i++)
+    {
+        MatrixXd byPoint(4, 3), byParameters(4, view.byParameters.cols());
+        byPoint << view.byPose.block(2*i, 3, 2, 3), view.byPose.block(2*(count + i), 3, 2, 3);
+        byParameters << view.byParameters.middleRows(2*i, 2), view.byParameters.middleRows(2*(count + i), 2);
+        const VectorXd miss = QR(byPoint).Q().col(3);           // what no motion of the point does to its four coordinates
+        const VectorXd row = transposeTimesVector(byParameters, miss);
+        const double known = std::sqrt(std::max(0., row.dot(timesVector(C, row))));
+        const double turned = transposeTimesVector(D, row).cwiseAbs().maxCoeff();
+        const double inSecond = miss.tail(2).norm();
+        if (inSecond > 0. && std::isfinite(known))
+            width = std::max(width, (MANY*known + turned)/inSecond);
+    }
+    return width + NOISE;
+}
+
+} // namespace tools

@@ -1,0 +1,171 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#include "match/partner_search.hpp"
+
+#include <opencv2/core/hal/hal.hpp>
+#include <algorithm>
+#include <cfloat>
+#include <cmath>
+
+using namespace cv;
+using namespace cv::refract;
+
+namespace tools {
+
+namespace {
+
+const double CLEARLY_NEARER = 0.8;      // than the second best elsewhere, as Lowe has it
+const double ELSEWHERE = 4.;            // px: what is nearer is the same detail, in another direction or scale
+const double TOLERANCE = 0.5;           // px, of curves
+
+//! Features by where they are.
+class Cells
+{
+public:
+    Cells(const Features& features, Size size, double side)
+        : side_(side), columns_((int)(size.width/side) + 1), rows_((int)(size.height/side) + 1), lists_(columns_*rows_)
+    {
+        for (int i = 0; i < features.size(); i++)
+        {
+            const Point cell = cellOf(features.pixels[i]);
+            if (isInside(cell))
+                lists_[cell.y*columns_ + cell.x].push_back(i);
+        }
+    }
+
+    //! Calls with all that is within one side of a place, and some more.
+    template<typename Visit> void visitNear(const Point2d& place, const Visit& visit) const
+    {
+        const Point middle = cellOf(place);
+        for (int y = middle.y - 1; y <= middle.y + 1; y++)
+            for (int x = middle.x - 1; x <= middle.x + 1; x++)
+                if (isInside(Point(x, y)))
+                    for (int i : lists_[y*columns_ + x])
+                        visit(i);
+    }
+
+private:
+    Point cellOf(const Point2d& place) const
+    {
+        const double FARTHEST = 1e6;
+        const auto cell = [&](double at) { return (int)std::floor(std::max(-FARTHEST, std::min(FARTHEST, at/side_))); };
+        return Point(cell(place.x), cell(place.y));
+    }
+    bool isInside(const Point& cell) const { return cell.x >= 0 && cell.y >= 0 && cell.x < columns_ && cell.y < rows_; }
+
+    const double side_;
+    const int columns_, rows_;
+    std::vector<std::vector<int>> lists_;
+};
+
+double distanceToSegment(const Point2d& p, const Point2d& from, const Point2d& to)
+{
+    const Point2d along = to - from;
+    const double length2 = along.dot(along), at = length2 > 0. ? (p - from).dot(along)/length2 : 0.;
+    return norm(p - from - std::min(1., std::max(0., at))*along);
+}
+
+//! Features near a curve, each once, in ascending order.
+std::vector<int> nearCurve(const Mat& curve, const Features& features, const Cells& cells, double search)
+{
+    std::vector<int> near;
+    for (int i = 0; i < curve.rows; i++)
+    {
+        const Point2d from = curve.at<Point2d>(std::max(0, i - 1)), to = curve.at<Point2d>(i);
+        const int steps = std::min(10000, (int)(norm(to - from)/search) + 1);
+        for (int k = 0; k <= steps; k++)
+            cells.visitNear(from + (double)k/steps*(to - from), [&](int feature) {
+                if (distanceToSegment(features.pixels[feature], from, to) <= search)
+                    near.push_back(feature);
+            });
+    }
+    std::sort(near.begin(), near.end());
+    near.erase(std::unique(near.begin(), near.end()), near.end());
+    return near;
+}
+
+//! The best so far, and the best elsewhere.
+struct Choice
+{
+    int partner = -1;
+    float best = FLT_MAX, second = FLT_MAX;
+
+    void offer(int candidate, float distance, const std::vector<Point2d>& places)
+    {
+        const bool isSame = partner >= 0 && norm(places[candidate] - places[partner]) < ELSEWHERE;
+        if (distance < best)
+        {
+            if (!isSame)
+                second = best;
+            best = distance;
+            partner = candidate;
+        }
+        else if (!isSame)
+            second = std::min(second, distance);
+    }
+    bool isClear() const { return partner >= 0 && best < CLEARLY_NEARER*CLEARLY_NEARER*second; }
+};
+
+//! z in the frame of a camera of all that camera 1 sees within a range of depths.
+Vec2d depthInCamera(const RigModel& rig, int c, const Vec2d& depth)
+{
+    if (c == 0)
+        return depth;
+    const int STEPS = 4;
+    const double FAR = 1e3;             // times the near end: what is beyond is endless
+    const Size size = rig.cameras[0]->imageSize();
+    std::vector<Point2d> pixels;
+    for (int i = 0; i <= STEPS; i++)
+        for (int j = 0; j <= STEPS; j++)
+            pixels.push_back(Point2d((size.width - 1)*i/(double)STEPS, (size.height - 1)*j/(double)STEPS));
+    Vec2d range(DBL_MAX, 0.);
+    for (double z : {depth[0], std::min(depth[1], FAR*depth[0])})
+    {
+        std::vector<Point3d> points;
+        refractivePointsOnPlane(pixels, points, rig.cameras[0], Vec4d(0, 0, 1, z));
+        for (const Point3d& X : points)
+        {
+            const double there = (rig.extrinsics[c]*Vec3d(X))[2];
+            if (there > 0.)             // false for NaN
+                range = Vec2d(std::min(range[0], there), std::max(range[1], there));
+        }
+    }
+    if (!(range[1] > 0.))
+        return Vec2d(depth[0], DBL_MAX);
+    return Vec2d(range[0], depth[1] > FAR*depth[0] ? DBL_MAX : range[1]);
+}
+
+} // namespace
+
+CameraPair::CameraPair(const RigModel& rig, int first_, int second_, const Vec2d& depth_, double search_)
+    : first(first_), second(second_), depth(depthInCamera(rig, first_, depth_)), search(search_)
+{
+}
+
+FeaturePairs partnersNearCurves(const RigModel& rig, const CameraPair& pair, const Features& first, const Features& second)
+{
+    if (first.size() == 0 || second.size() == 0)
+        return {};
+    const RigidTransform place = fromTo(rig.extrinsics[pair.first], rig.extrinsics[pair.second]);
+    std::vector<Mat> curves;
+    computeRefractiveEpilines(first.pixels, 1, rig.cameras[pair.first], rig.cameras[pair.second], place.R, place.T, pair.depth, curves,
+                              TOLERANCE);
+    const Cells cells(second, rig.cameras[pair.second]->imageSize(), pair.search);
+    std::vector<Choice> forth(first.size()), back(second.size());
+    for (int i = 0; i < first.size(); i++)
+        for (int j : nearCurve(curves[i], second, cells, pair.search))
+        {
+            const float distance = hal::normL2Sqr_(first.descriptors.ptr<float>(i), second.descriptors.ptr<float>(j),
+                                                   first.descriptors.cols);
+            forth[i].offer(j, distance, second.pixels);
+            back[j].offer(i, distance, first.pixels);
+        }
+    FeaturePairs pairs;
+    for (int i = 0; i < first.size(); i++)
+        if (forth[i].isClear() && back[forth[i].partner].isClear() && back[forth[i].partner].partner == i)
+            pairs.push_back({i, forth[i].partner});
+    return pairs;
+}
+
+} // namespace tools

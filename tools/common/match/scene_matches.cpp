@@ -1,0 +1,229 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#include "match/scene_matches.hpp"
+#include "console/failure.hpp"
+#include "console/progress.hpp"
+#include "match/chains.hpp"
+#include "bundle/bundle_adjustment.hpp"
+#include "match/moved_rig.hpp"
+#include "match/pair_mistakes.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace cv;
+
+namespace tools {
+
+namespace {
+
+const int FEWEST = 20;                  // matches, to tell good ones from others
+const double NaN = std::numeric_limits<double>::quiet_NaN();
+
+Mat greyFrame(Frames& frames, int i, const Calibration& calibration, int camera)
+{
+    Mat image = frames.read(i), same = image;
+    requireSize(image, frames.name(i), calibration.cameras[camera].camera->imageSize());
+    makeEightBit(image, same);
+    return greyOf(image, calibration.channel);
+}
+
+ScaledMatches matchesOfChains(const std::string& moment, const std::vector<Features>& features, const std::vector<Chain>& chains)
+{
+    ScaledMatches result;
+    result.matches.pixels.resize(features.size());
+    result.scales.resize(features.size());
+    for (const Chain& chain : chains)
+    {
+        result.matches.names.push_back({moment, std::to_string(result.size() + 1)});
+        for (size_t c = 0; c < features.size(); c++)
+        {
+            result.matches.pixels[c].push_back(chain[c] >= 0 ? features[c].pixels[chain[c]] : Point2d(NaN, NaN));
+            result.scales[c].push_back(chain[c] >= 0 ? features[c].scales[chain[c]] : NaN);
+        }
+    }
+    return result;
+}
+
+std::vector<Moment> sharedMoments(const std::vector<Frames>& cameras)
+{
+    std::vector<const Frames*> all;
+    for (const Frames& frames : cameras)
+        all.push_back(&frames);
+    std::vector<Moment> moments = momentsOf(all);
+    const auto isAlone = [](const Moment& m) {
+        return std::count_if(m.frames.begin(), m.frames.end(), [](int f) { return f >= 0; }) < 2; };
+    moments.erase(std::remove_if(moments.begin(), moments.end(), isAlone), moments.end());
+    if (moments.empty())
+        throw Failure("no image of '" + cameras[0].source() + "' has the name of one of another camera: images of one moment need equal "
+                      "names");
+    return moments;
+}
+
+void setStds(const MatchNoise& noise, ScaledMatches& scaled)
+{
+    scaled.matches.stds = scaled.scales;
+    for (std::vector<double>& ofCamera : scaled.matches.stds)
+        for (double& std : ofCamera)
+            std = noise.stdOf(std);         // NaN stays
+}
+
+//! Of one moment of cameras 1 and 2; with a frame of camera 2 so many moments later.
+PairDiagnosis diagnosisOf(const Calibration& calibration, std::vector<Frames>& cameras, const std::vector<Moment>& moments, int at,
+                          int later)
+{
+    const int other = at + later;
+    if (other < 0 || other >= (int)moments.size() || moments[at].frames[0] < 0 || moments[other].frames[1] < 0)
+        return {};
+    return diagnosePair(firstPair(calibration), greyFrame(cameras[0], moments[at].frames[0], calibration, 0),
+                        greyFrame(cameras[1], moments[other].frames[1], calibration, 1));
+}
+
+//! Why images hardly match, as a sentence's end; empty: nothing is known to be wrong.
+std::string mistakeIn(const Calibration& calibration, std::vector<Frames>& cameras, const std::vector<Moment>& moments)
+{
+    const double FITS = 2.;             // px
+    const int MOST_LATE = 3;            // moments
+    const int at = (int)moments.size()/2;
+    const PairDiagnosis asGiven = diagnosisOf(calibration, cameras, moments, at, 0);
+    if (!asGiven.mistake.empty())
+        return ": " + asGiven.mistake + " (LEFT is camera 1, RIGHT camera 2)";
+    for (int later = -MOST_LATE; later <= MOST_LATE; later++)
+        if (later && !(asGiven.rows < FITS) && diagnosisOf(calibration, cameras, moments, at, later).rows < FITS)
+            return format(": images of camera 2 are of other moments than those of camera 1, which fit %d image%s %s", std::abs(later),
+                          std::abs(later) == 1 ? "" : "s", later > 0 ? "later" : "earlier");
+    if (asGiven.rows > FITS)
+        return format(": %d features are alike in both images, but their rays miss each other by %.1f px (median): is the calibration of "
+                      "this rig, and are the images of one moment? A camera that turned by more than %g degrees needs --search of "
+                      "refract_match", asGiven.features, asGiven.rows, MAY_HAVE_TURNED);
+    return "";
+}
+
+//! Matches by chance are anywhere within the search, right ones within a few standard deviations.
+double wrongOf(const SceneMatches& result)
+{
+    const double WITHIN = 4.;           // standard deviations, as the robust fit has it
+    const double share = std::min(0.9, WITHIN*result.good.matches.usualStd()/result.search);
+    return result.leftOut*share/(1. - share);
+}
+
+} // namespace
+
+std::vector<Frames> framesOf(const std::vector<std::string>& sources, const Calibration& calibration, const std::string& filename)
+{
+    if (calibration.single())
+        throw Failure("'" + filename + "' has one camera: what it sees at one place has no depth, so that there is nothing to match");
+    if (sources.size() != calibration.cameras.size())
+        throw Failure(format("'%s' has %zu cameras, and images of %zu are given: one image, quoted glob or video of each, in their order",
+                             filename.c_str(), calibration.cameras.size(), sources.size()));
+    std::vector<Frames> frames;
+    for (const std::string& source : sources)
+        frames.emplace_back(source);
+    return frames;
+}
+
+SceneMatcher::SceneMatcher(const Calibration& calibration, const SceneOptions& options)
+    : input_{modelOf(calibration), calibration.covariance, 0., 0.}, options_(options)
+{
+    for (int a = 0; a < (int)input_.rig.cameras.size(); a++)
+        for (int b = a + 1; b < (int)input_.rig.cameras.size(); b++)
+        {
+            const double search = options.search > 0. ? options.search : searchWidth(input_, a, b, options.depth, MAY_HAVE_TURNED);
+            pairs_.push_back(CameraPair(input_.rig, a, b, options.depth, search));
+        }
+}
+
+ScaledMatches SceneMatcher::matchesOf(const std::string& moment, const std::vector<Mat>& images) const
+{
+    std::vector<Features> features(images.size());
+    for (size_t c = 0; c < images.size(); c++)
+        if (!images[c].empty())
+            features[c] = featuresOf(images[c], options_.features);
+    std::vector<PairMatches> matches;
+    for (const CameraPair& pair : pairs_)
+        matches.push_back({pair.first, pair.second, partnersNearCurves(input_.rig, pair, features[pair.first], features[pair.second])});
+    return matchesOfChains(moment, features, chainsOf(features, matches));
+}
+
+/* A part of the matches tells the rig as it is now, robustly, and the rig which of all others are right; these tell it again, each with
+the std of its scale. */
+std::vector<int> SceneMatcher::leaveOutWrong(ScaledMatches& scaled, MatchNoise& noise) const
+{
+    const int ENOUGH = 400;
+    const BundleStart start{input_.rig, cv::refract::GLASS_FIX_NORMAL, covarianceOfMoved(input_, MAY_HAVE_TURNED), {}};
+    const ScaledMatches some = scaled.only(spreadChoice(scaled, input_.rig, ENOUGH));
+    RigModel rig = adjustBundle(start, some.matches, {}, true).fit.rig;
+    std::vector<int> good;
+    for (const bool isLast : {false, true})
+    {
+        const std::vector<MatchResidual> residuals = residualsOf(scaled, rig);
+        noise = noiseOf(residuals);
+        setStds(noise, scaled);
+        good.clear();
+        for (int i = 0; i < scaled.size(); i++)
+            if (residuals[i].isWithin(noise))
+                good.push_back(i);
+        if (!isLast)
+            rig = adjustBundle(start, scaled.only(good).matches, {}, false).fit.rig;
+    }
+    return good;
+}
+
+SceneMatches SceneMatcher::goodOf(const ScaledMatches& all) const
+{
+    SceneMatches result;
+    for (const CameraPair& pair : pairs_)
+        result.search = std::max(result.search, pair.search);
+    result.found = all.size();
+    ScaledMatches chosen = all.only(spreadChoice(all, input_.rig, options_.count));
+    result.chosen = chosen.size();
+    if (result.chosen < FEWEST)
+        throw Failure(format("only %d matches were found, fewer than %d: more texture, light or images are wanted, or --depth is not that "
+                             "of the scene", result.chosen, FEWEST));
+    const std::vector<int> good = leaveOutWrong(chosen, result.noise);
+    result.good = chosen.only(good);
+    result.leftOut = result.chosen - (int)good.size();
+    result.wrongLeft = wrongOf(result);
+    return result;
+}
+
+SceneMatches matchScene(const Calibration& calibration, std::vector<Frames>& cameras, const SceneOptions& options, bool quiet)
+{
+    const SceneMatcher matcher(calibration, options);
+    const std::vector<Moment> moments = sharedMoments(cameras);
+    ScaledMatches all;
+    {
+        Progress progress("matching", (int)moments.size(), quiet);
+        for (const Moment& moment : moments)
+        {
+            progress.at(moment.stem);
+            std::vector<Mat> images(cameras.size());
+            for (int c = 0; c < (int)cameras.size(); c++)
+                if (moment.frames[c] >= 0)
+                    images[c] = greyFrame(cameras[c], moment.frames[c], calibration, c);
+            all.add(matcher.matchesOf(moment.stem, images));
+            progress.step();
+        }
+    }
+    const double MANY = 0.3;            // of the matches left out: something is wrong with all
+    const double NO_FEATURE = 1.;       // px: features are placed better
+    SceneMatches result;
+    try
+    {
+        result = matcher.goodOf(all);
+    }
+    catch (const Failure& failure)
+    {
+        throw Failure(failure.what() + mistakeIn(calibration, cameras, moments));
+    }
+    result.moments = (int)moments.size();
+    const bool isNoFit = result.good.matches.usualStd() > NO_FEATURE;
+    const std::string mistake = isNoFit || result.leftOut > MANY*result.chosen ? mistakeIn(calibration, cameras, moments) : "";
+    if (isNoFit || !mistake.empty())
+        throw Failure(format("%d of %d matches contradict all others, which fit within %.2g px", result.leftOut, result.chosen,
+                             result.good.matches.usualStd()) + mistake);
+    return result;
+}
+
+} // namespace tools

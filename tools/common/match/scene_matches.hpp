@@ -1,0 +1,68 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#ifndef REFRACT_TOOLS_SCENE_MATCHES_HPP
+#define REFRACT_TOOLS_SCENE_MATCHES_HPP
+
+#include "assess/check_input.hpp"
+#include "console/frames.hpp"
+#include "match/match_choice.hpp"
+#include "match/match_noise.hpp"
+#include "match/partner_search.hpp"
+
+/* From images of a scene to matches for refract_bundle and refract_check. */
+namespace tools {
+
+/** What each camera of a calibration took. Throws Failure if there are not as many as cameras, or one alone. @param filename of the
+calibration, for the text */
+std::vector<Frames> framesOf(const std::vector<std::string>& sources, const Calibration& calibration, const std::string& filename);
+
+struct SceneOptions
+{
+    cv::Vec2d depth;                //!< z of the scene in the frame of camera 1
+    double search = 0.;             //!< px from the epipolar curves; 0: what the calibration does not know, and what may have moved
+    int count = 3000, features = 4000;      //!< matches at most; features of an image at most
+};
+
+//! By how much cameras and windows may have turned since the calibration, degrees.
+const double MAY_HAVE_TURNED = 0.3;
+
+struct SceneMatches
+{
+    ScaledMatches good;             //!< with stds
+    MatchNoise noise;
+    double search = 0.;             //!< px, the largest of all pairs
+    int moments = 0;                //!< of which two cameras have images
+    int found = 0;                  //!< matches in all images
+    int chosen = 0;                 //!< of these, spread over image and depth
+    int leftOut = 0;                //!< of the chosen: no point explains them
+    double wrongLeft = 0.;          //!< expected among the good: as many are near a curve by chance
+};
+
+/** The cameras of a calibration, and what is known of them. */
+class SceneMatcher
+{
+public:
+    SceneMatcher(const Calibration& calibration, const SceneOptions& options);
+
+    //! All matches of one moment. @param images per camera, 8-bit grey; empty: none
+    ScaledMatches matchesOf(const std::string& moment, const std::vector<cv::Mat>& images) const;
+
+    /** The good ones of all moments. The rig may have moved: it is estimated within what is known of it and what may have turned. Throws
+    Failure where there are too few to tell the good ones. */
+    SceneMatches goodOf(const ScaledMatches& all) const;
+
+private:
+    std::vector<int> leaveOutWrong(ScaledMatches& scaled, MatchNoise& noise) const;
+
+    CheckInput input_;
+    SceneOptions options_;
+    std::vector<CameraPair> pairs_;
+};
+
+//! Of all moments that two cameras have images of.
+SceneMatches matchScene(const Calibration& calibration, std::vector<Frames>& cameras, const SceneOptions& options, bool quiet);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_SCENE_MATCHES_HPP

@@ -1,0 +1,109 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#include "console/cli.hpp"
+#include "console/csv.hpp"
+#include "console/file_output.hpp"
+#include "console/outputs.hpp"
+#include "console/table.hpp"
+#include "match/depth_range.hpp"
+#include "match/scene_matches.hpp"
+
+#include <iostream>
+#include <sstream>
+
+static const char MANUAL[] = R"(Finds points of a scene that several cameras see through their windows: matches, without a board.
+
+  refract_match calib.yml 'left/*.png' 'right/*.png' --depth=450,1150 --out=matches.csv
+
+One image, quoted glob, numbered images (left%04d.png) or video of each camera of calib.yml, in its order, up to 16. Images of one moment
+have equal stems. --depth is the range of z of the scene in the frame of camera 1, in the unit of calib.yml; without it, the calibrated
+volume and half as far again.
+
+Features (OpenCV's SIFT) are compared only where they are near the refracted epipolar curve; a match is one that two features choose each
+other for, clearly before all others. --search is how far from the curve they may be: by default, what the calibration does not know, and
+what a turn by 0.3 degrees since then does. At most --count are taken, spread over image and depth. Then all are fitted, with the rig within
+what is known of it and what may have turned: a match that no point explains is left out.
+
+matches.csv: image,id,u1,v1,u2,v2,...,std1,std2,..., raw pixels, and how well each is known, one standard deviation of a coordinate. It
+follows from the residuals of the matches by the size of the features. For refract_bundle; refract_check --scene does both.
+
+Of two cameras a wrong match along the curve cannot be seen; the count that is expected is said.)";
+
+namespace {
+
+using namespace tools;
+
+struct Options
+{
+    std::string calibration, depth, out;
+    std::vector<std::string> images;
+    SceneOptions scene;
+    bool noWindow = false;
+};
+
+void addOptions(OptionParser& parser, Options& o)
+{
+    parser.add("calib.yml", o.calibration, "of two cameras or more, what refract_calib wrote").required();
+    parser.add("IMAGES", o.images, "of each camera: an image, a quoted glob or a video").required();
+    parser.add("--depth", o.depth, "NEAR,FAR: z of the scene in the frame of camera 1; FAR may be inf");
+    parser.add("--search", o.scene.search, "pixels from the epipolar curve within which partners are looked for").check(moreThanZero());
+    parser.add("--count", o.scene.count, "matches at most").check(isCount()).captureDefault();
+    parser.add("--features", o.scene.features, "features of an image at most").check(isCount()).captureDefault();
+    parser.add("--out", o.out, "matches.csv to write").required();
+    parser.addFlag("--no-window", o.noWindow, "calib.yml has no glass_window, and there is none");
+}
+
+std::string csvOf(const Matches& matches)
+{
+    std::ostringstream csv;
+    csv << "image,id";
+    for (int c = 1; c <= matches.cameraCount(); c++)
+        csv << ",u" << c << ",v" << c;
+    for (int c = 1; c <= matches.cameraCount(); c++)
+        csv << ",std" << c;
+    csv << '\n';
+    for (int i = 0; i < (int)matches.names.size(); i++)
+    {
+        csv << cellOf(matches.names[i].image) << ',' << cellOf(matches.names[i].id);
+        for (int c = 0; c < matches.cameraCount(); c++)
+            csv << (matches.isSeen(c, i) ? format(",%.3f,%.3f", matches.pixels[c][i].x, matches.pixels[c][i].y) : ",,");
+        for (int c = 0; c < matches.cameraCount(); c++)
+            csv << (matches.isSeen(c, i) ? format(",%.3f", matches.stds[c][i]) : ",");
+        csv << '\n';
+    }
+    return csv.str();
+}
+
+void print(const SceneMatches& result)
+{
+    std::cout << format("%zu matches of %d moment%s, %d of them left out as no point explains them; about %.0f wrong ones are left\n",
+                        result.good.matches.names.size(), result.moments, result.moments == 1 ? "" : "s", result.leftOut, result.wrongLeft)
+              << format("%d were found within %.1f px of their curves, %d taken, spread over image and depth\n", result.found,
+                        result.search, result.chosen)
+              << format("standard deviation of a pixel: %.3f px, by the size s of a feature sqrt(%.3f^2 + (%.3f s)^2)\n",
+                        result.good.matches.usualStd(), result.noise.floor, result.noise.share);
+}
+
+} // namespace
+
+int refract_match_main(int argc, char** argv)
+{
+    return runTool(argc, argv, MANUAL, [](Command& command) {
+        Options options = parsed(command, addOptions);
+        const Calibration calibration = readCalibration(options.calibration);
+        requireWindows(calibration, options.calibration, options.noWindow);
+        warnOfContradictions(calibration, options.calibration, command);
+        std::vector<std::string> inputs = options.images;
+        inputs.insert(inputs.end(), {options.calibration, command.settings()});
+        checkOutputs({{"--out", options.out, OUTPUT_TEXT}}, inputs);
+        std::vector<Frames> frames = framesOf(options.images, calibration, options.calibration);
+        options.scene.depth = options.depth.empty() ? calibratedDepthRange(calibration, options.calibration)
+                                                    : givenDepthRange(options.depth, calibration);
+        const SceneMatches result = matchScene(calibration, frames, options.scene, command.quiet());
+        writeText(options.out, csvOf(result.good.matches));
+        if (!command.quiet())
+            print(result);
+        return DONE;
+    });
+}
