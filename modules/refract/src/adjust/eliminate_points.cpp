@@ -149,7 +149,7 @@ void addPriors(const Problem& problem, const FreeSpace& space, NormalEquations& 
 struct EliminatedCluster
 {
     InnerBlock points;
-    MatrixXd W;                 //!< Y E^T F
+    MatrixXd W;                 //!< (Y E^T F)^T
     VectorXd residual;          //!< Y E^T r
 };
 
@@ -190,7 +190,7 @@ EliminatedCluster eliminate(const Problem& problem, int index, const std::vector
     for (size_t k = 0; k < columns.size(); k++)
         place[columns[k]] = (int)k;
     const int size = cluster.size();
-    MatrixXd EE = MatrixXd::Zero(size, size), EF = MatrixXd::Zero(size, columns.size());
+    MatrixXd EE = MatrixXd::Zero(size, size), FE = MatrixXd::Zero(columns.size(), size);
     VectorXd Er = VectorXd::Zero(size);
     for (const Observation& o : problem.observationsOf(index))
     {
@@ -201,20 +201,23 @@ EliminatedCluster eliminate(const Problem& problem, int index, const std::vector
         const int at = 3*problem.scene().placeInCluster(problem.images()[o.image].points.index[o.row]);
         EE.block<3, 3>(at, at) += E.transpose()*E;
         Er.segment<3>(at) += E.transpose()*image.residuals.segment<2>(2*o.row);
-        for (size_t c = 0; c < image.columns.size(); c++)
-            EF.block<3, 1>(at, place[image.columns[c]]) += E.transpose()*image.outer.block<2, 1>(2*o.row, c);
+        const double* const u = image.outer.data() + 2*o.row*image.outer.cols();
+        const double* const v = u + image.outer.cols();
+        for (int k = 0; k < 3; k++)
+            for (size_t c = 0; c < image.columns.size(); c++)
+                FE(place[image.columns[c]], at + k) += E(0, k)*u[c] + E(1, k)*v[c];
     }
     cluster.addLengths(problem.pixelSigma(), EE, Er);
     const MatrixXd Y = inverseRoot(EE, result.points.isDetermined);
-    result.W = product(Y, EF);
+    result.W = timesTranspose(FE, Y);
     result.residual = timesVector(Y, Er);
     result.points.half = Y.transpose();
-    result.points.byOuter = -transposeTimes(Y, result.W);
+    result.points.byOuter = -product(result.W, Y).transpose();
     result.points.step = -transposeTimesVector(Y, result.residual);
     return result;
 }
 
-//! Subtracts W^T W of many clusters from the cameras' equations at a time, as products of large matrices are faster.
+//! Subtracts W W^T of many clusters from the cameras' equations at a time, as products of large matrices are faster.
 class ProductsOfRows
 {
 public:
@@ -222,14 +225,14 @@ public:
 
     void subtract(const EliminatedCluster& cluster)
     {
-        const int size = (int)cluster.W.rows();
+        const int size = (int)cluster.W.cols();
         if (used_ + size > rows_.rows())
             flush();
         if (size > rows_.rows())
             rows_ = MatrixXd::Zero(size, rows_.cols());
         const std::vector<int>& columns = cluster.points.columns;
         for (size_t k = 0; k < columns.size() && columns[k] < rows_.cols(); k++)
-            rows_.block(used_, columns[k], size, 1) = cluster.W.col(k);
+            rows_.block(used_, columns[k], size, 1) = cluster.W.row(k).transpose();
         used_ += size;
     }
 
@@ -275,16 +278,19 @@ void subtractPose(int view, const std::vector<PoseColumns>& seen, std::vector<in
     {
         const std::vector<int>& columns = own.cluster->points.columns;
         const MatrixXd& W = own.cluster->W;
-        const auto ofView = W.middleCols<SIZE>(own.first);
-        column.diagonal.noalias() -= ofView.transpose().lazyProduct(ofView);
-        size_t k = 0;
-        for (; k < columns.size() && columns[k] < cameras; k++)
-            equations.ofBoth.col(columns[k]).segment<SIZE>(SIZE*view).noalias() -= ofView.transpose().lazyProduct(W.col(k));
-        for (; k < columns.size(); k += SIZE)
+        for (int point = 0; point < (int)W.cols(); point += 3)
         {
-            const int other = poses.at((columns[k] - cameras)/SIZE);
-            if (other > poses.at(view))
-                column.blocks[entry[other]].noalias() -= W.middleCols<SIZE>(k).transpose().lazyProduct(ofView);
+            const Eigen::Matrix<double, SIZE, 3> ofView = W.block<SIZE, 3>(own.first, point);
+            column.diagonal.noalias() -= ofView.lazyProduct(ofView.transpose());
+            size_t k = 0;
+            for (; k < columns.size() && columns[k] < cameras; k++)
+                equations.ofBoth.col(columns[k]).segment<SIZE>(SIZE*view).noalias() -= ofView.lazyProduct(W.block<1, 3>(k, point).transpose());
+            for (; k < columns.size(); k += SIZE)
+            {
+                const int other = poses.at((columns[k] - cameras)/SIZE);
+                if (other > poses.at(view))
+                    column.blocks[entry[other]].noalias() -= W.block<SIZE, 3>(k, point).lazyProduct(ofView.transpose());
+            }
         }
     }
 }
@@ -299,7 +305,7 @@ void subtractPoses(const std::vector<EliminatedCluster>& clusters, NormalEquatio
         const std::vector<int>& columns = cluster.points.columns;
         for (size_t k = 0; k < columns.size(); k++)
         {
-            equations.gradient[columns[k]] -= cluster.W.col(k).dot(cluster.residual);
+            equations.gradient[columns[k]] -= cluster.W.row(k).dot(cluster.residual);
             if (columns[k] >= cameras && (columns[k] - cameras) % SIZE == 0)
                 seen[(columns[k] - cameras)/SIZE].push_back({ &cluster, (int)k });
         }

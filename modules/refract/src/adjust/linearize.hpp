@@ -34,7 +34,7 @@ struct ImageRows
 {
     Eigen::VectorXd residuals;      //!< u, v of each point
     RowMajorMatrix inner;           //!< by what is eliminated: the pose of a target (0 if it is fixed), or each point of a scene
-    Eigen::MatrixXd outer;          //!< by the free parameters that the image depends on
+    RowMajorMatrix outer;           //!< by the free parameters that the image depends on
     std::vector<int> columns;       //!< which these are, in the free space
 
     //! @param rootWeights in place of the image's own

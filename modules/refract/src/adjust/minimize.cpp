@@ -44,7 +44,8 @@ void TrustRegion::solve(ceres::Problem& problem, bool isSparse)
     ceres::Solver::Options options;
     const double firstRadius = options.initial_trust_region_radius;
     options.trust_region_strategy_type = strategy;
-    options.linear_solver_type = isSparse ? ceres::SPARSE_NORMAL_CHOLESKY : ceres::DENSE_QR;
+    const bool hasSparse = options.sparse_linear_algebra_library_type != ceres::NO_SPARSE;     // a Ceres that was built without has none
+    options.linear_solver_type = !isSparse ? ceres::DENSE_QR : hasSparse ? ceres::SPARSE_NORMAL_CHOLESKY : ceres::DENSE_NORMAL_CHOLESKY;
     options.max_num_iterations = iterations;
     options.initial_trust_region_radius = radius;
     options.function_tolerance = change;
