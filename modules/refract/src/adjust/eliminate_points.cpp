@@ -284,7 +284,8 @@ void subtractPose(int view, const std::vector<PoseColumns>& seen, std::vector<in
             column.diagonal.noalias() -= ofView.lazyProduct(ofView.transpose());
             size_t k = 0;
             for (; k < columns.size() && columns[k] < cameras; k++)
-                equations.ofBoth.col(columns[k]).segment<SIZE>(SIZE*view).noalias() -= ofView.lazyProduct(W.block<1, 3>(k, point).transpose());
+                equations.ofBoth.col(columns[k]).segment<SIZE>(SIZE*view).noalias() -=
+                    ofView.lazyProduct(W.block<1, 3>(k, point).transpose());
             for (; k < columns.size(); k += SIZE)
             {
                 const int other = poses.at((columns[k] - cameras)/SIZE);
