@@ -253,9 +253,11 @@ double run(int views, double wrong, double secondsBefore, int viewsBefore)
 {
     const Survey survey = makeSurvey(views, wrong);
     const Found found = adjust(survey, wrong > 0 ? GLASS_ROBUST : 0);
-    size_t lost = 0, kept = 0, good = 0;
+    size_t lost = 0, kept = 0, good = 0;        // a point that too few see to tell which of them is wrong is left out as a whole
     for (size_t i = 0; i < survey.isWrong.size(); i++)
     {
+        if (!std::isfinite(found.points[survey.observations[i][2]].x))
+            continue;
         good += !survey.isWrong[i];
         lost += !survey.isWrong[i] && !found.inliers[i];
         kept += survey.isWrong[i] && found.inliers[i];
@@ -266,7 +268,7 @@ double run(int views, double wrong, double secondsBefore, int viewsBefore)
                 usage.ru_maxrss/1024, found.rms, posesOverStated(survey, found), pointsOverStated(survey, found),
                 windowOverStated(survey, found));
     if (wrong > 0)
-        std::printf("%9.0f %%%10.1e%10zu", 100*wrong, (double)lost/(double)good, kept);
+        std::printf("%11.0f%11.1e%11zu", 100*wrong, (double)lost/(double)good, kept);
     else if (viewsBefore > 0)
         std::printf("%11.2f", std::log(found.cpu/secondsBefore)/std::log((double)views/viewsBefore));
     std::printf("\n");
@@ -276,7 +278,7 @@ double run(int views, double wrong, double secondsBefore, int viewsBefore)
 
 void printHead(const char* last)
 {
-    std::printf("\n%7s%9s%9s%9s%9s%7s%9s%8s%8s%8s%11s\n", "views", "points", "pixels", "CPU, s", "clock, s", "MB", "RMS, px", "poses",
+    std::printf("\n%7s%9s%9s%9s%9s%7s%9s%8s%8s%8s%s\n", "views", "points", "pixels", "CPU, s", "clock, s", "MB", "RMS, px", "poses",
                 "points", "camera", last);
 }
 
@@ -285,16 +287,16 @@ void printHead(const char* last)
 void printSurveys(int most)
 {
     std::printf("a strip through a flat port in water, lens and window within their priors; poses, points, camera: error/sigma\n");
-    printHead("views^");
+    printHead("    views^x");
     double seconds = 0;
     int before = 0;
-    for (int views : { 20, 100, 300, 1000, 3000, 6000 })
+    for (int views : { 20, 60, 100, 300, 1000, 3000, 6000 })
         if (views <= most)
         {
             seconds = run(views, 0, seconds, before);
             before = views;
         }
-    printHead("wrong     good lost, wrong kept");
+    printHead("    wrong, %  good lost wrong kept");
     for (int views : { 20, 100, 300 })
         if (views <= most)
             run(views, 0.1, 0, 0);
