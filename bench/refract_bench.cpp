@@ -6,6 +6,7 @@
 #include "bundles.hpp"
 #include "growth.hpp"
 #include "rows.hpp"
+#include "surveys.hpp"
 
 #include <opencv2/core/utility.hpp>
 #include <cstdio>
@@ -58,7 +59,7 @@ struct Options
 {
     bool quick, growth, bundles;
     std::string only, isa;
-    int points, rounds;
+    int points, rounds, surveys;
 };
 
 const char KEYS[] =
@@ -66,6 +67,7 @@ const char KEYS[] =
     "{ quick   |        | few points, one round: a check of the answers only }"
     "{ growth  |        | time against points, layers, incidence and views instead of the table }"
     "{ bundles |        | large bundle adjustments, processor time, instead of the table }"
+    "{ surveys | 0      | strips of 20, 100, 300, 1000, ... views, up to so many, instead of the table }"
     "{ only    |        | rows whose key begins with this }"
     "{ isa     | avx512 | the highest instruction set to use: baseline, avx2, avx512 }"
     "{ points  | 100000 | points in an array }"
@@ -89,7 +91,8 @@ Options optionsOf(int argc, char** argv)
             throw std::runtime_error("there is no option " + argument + ", see --help");
     }
     const Options o = { parser.has("quick"), parser.has("growth"), parser.has("bundles"), parser.get<std::string>("only"),
-                        parser.get<std::string>("isa"), parser.get<int>("points"), parser.get<int>("rounds") };
+                        parser.get<std::string>("isa"), parser.get<int>("points"), parser.get<int>("rounds"),
+                        parser.get<int>("surveys") };
     if (!parser.check() || o.points < 1 || o.rounds < 1 || (o.isa != "baseline" && o.isa != "avx2" && o.isa != "avx512"))
         throw std::runtime_error("--points and --rounds are numbers from 1 on, --isa is baseline, avx2 or avx512");
     return o;
@@ -104,9 +107,9 @@ try
     restartFor(o.isa, argv);
     if (o.quick)
         o.points = 2000, o.rounds = 1;
-    if (o.bundles)
+    if (o.bundles || o.surveys > 0)
     {
-        printBundles();
+        o.bundles ? printBundles() : printSurveys(o.surveys);
         return 0;
     }
     cv::setNumThreads(2);       // its workers start here, where they may run anywhere

@@ -65,7 +65,8 @@ inline std::unique_ptr<cv::refract::Problem> bundleAt(const RigTruth& truth, con
     std::vector<KnownLength> knownLengths;
     for (const cv::Vec4d& l : scene.lengths)
         knownLengths.push_back({ (int)l[0], (int)l[1], l[2], l[3] });
-    std::unique_ptr<Problem> bundle(new Problem(rig, scene.pixels, (int)scene.points.size(), knownLengths, poses, priors, flags));
+    std::unique_ptr<Problem> bundle(new Problem(rig, sceneImages(scene.pixels), (int)scene.points.size(), knownLengths, poses, priors,
+                                                flags));
     bundle->setPixelSigma(sigma);
     bundle->setPoints(scene.points, {});
     return bundle;

@@ -24,38 +24,51 @@ public:
     {
         for (int block : cost.variableBlocks())
             values.push_back(problem.blocks()[block].values);
-    }
-    std::vector<const double*> parameters() const
-    {
-        std::vector<const double*> p;
-        for (const VectorXd& block : values)
-            p.push_back(block.data());
-        return p;
+        std::vector<double*> state;
+        for (VectorXd& block : values)
+            state.push_back(block.data());
+        cost.setState(state);
+        REQUIRE(cost.linearize());
+        for (int i = 0; i < cost.groupCount(); i++)
+            groups.emplace_back(new ReducedCost::Group(cost, i));
     }
     double squaredError()
     {
-        VectorXd residuals(cost.num_residuals());
-        REQUIRE(cost.Evaluate(parameters().data(), residuals.data(), nullptr));
-        return residuals.squaredNorm();
+        cost.PrepareForEvaluation(false, true);
+        double sum = 0;
+        for (const auto& group : groups)
+        {
+            VectorXd residuals(group->num_residuals());
+            REQUIRE(group->Evaluate(nullptr, residuals.data(), nullptr));
+            sum += residuals.squaredNorm();
+        }
+        return sum;
     }
     //! By each block.
     std::vector<VectorXd> gradient()
     {
-        VectorXd residuals(cost.num_residuals());
-        std::vector<RowMajorMatrix> jacobians;
-        std::vector<double*> pointers;
-        for (const VectorXd& block : values)
-            jacobians.push_back(RowMajorMatrix(cost.num_residuals(), block.size()));
-        for (RowMajorMatrix& J : jacobians)
-            pointers.push_back(J.data());
-        REQUIRE(cost.Evaluate(parameters().data(), residuals.data(), pointers.data()));
+        cost.PrepareForEvaluation(true, true);
         std::vector<VectorXd> gradients;
-        for (const RowMajorMatrix& J : jacobians)
-            gradients.push_back(2*J.transpose()*residuals);
+        for (const VectorXd& block : values)
+            gradients.push_back(VectorXd::Zero(block.size()));
+        for (const auto& group : groups)
+        {
+            VectorXd residuals(group->num_residuals());
+            std::vector<RowMajorMatrix> jacobians;
+            std::vector<double*> pointers;
+            for (int block : group->blocks())
+                jacobians.push_back(RowMajorMatrix(residuals.size(), values[block].size()));
+            for (RowMajorMatrix& J : jacobians)
+                pointers.push_back(J.data());
+            REQUIRE(group->Evaluate(nullptr, residuals.data(), pointers.data()));
+            for (size_t i = 0; i < jacobians.size(); i++)
+                gradients[group->blocks()[i]] += 2*jacobians[i].transpose()*residuals;
+        }
         return gradients;
     }
 
     ReducedCost cost;
+    std::vector<std::unique_ptr<ReducedCost::Group> > groups;
     std::vector<VectorXd> values;
 };
 

@@ -20,7 +20,7 @@ CALLS = ["calibrateGlass", "calibrateGlassExtended", "calibrateGlassNormal", "co
          "refractiveSolveP3P",
          "refractiveUndistortPoints", "readRig", "readRigExtended", "refractiveUnprojectPoints", "stereoCalibrateGlass",
          "triangulateRefractive", "triangulateRefractiveExtended", "writeRig", "refractiveBundleAdjust",
-         "refractiveBundleAdjustExtended", "refractiveIndex"]
+         "refractiveBundleAdjustExtended", "refractiveBundleAdjustSparse", "refractiveIndex"]
 
 
 def test_every_call_is_here_with_its_docstring():

@@ -186,6 +186,28 @@ TEST(Refract_BundleAdjust, finds_both_windows)
     EXPECT_NEAR(0, angle(cameras[1]->window().normal, window2().normal), 1e-5);
     ASSERT_EQ(points.size(), found.size());
     EXPECT_NEAR(0, cv::norm(found[17] - points[17]), 1e-3);
+
+    // The same as a list of observations.
+    std::vector<Vec3i> observations;
+    std::vector<Point2d> listed;
+    for (int camera = 0; camera < 2; camera++)
+        for (int point = 0; point < (int)points.size(); point++)
+        {
+            observations.push_back(Vec3i(0, camera, point));
+            listed.push_back(pixels[camera][point]);
+        }
+    std::vector<Mat> rvecs(1, Mat::zeros(3, 1, CV_64F)), tvecs(1, Mat::zeros(3, 1, CV_64F)), viewCovariances;
+    Mat deviations, covariance, pointDeviations, perViewErrors, inliers;
+    std::vector<Point3d> again;
+    EXPECT_NEAR(0, refractiveBundleAdjust(observations, listed, cameras, std::vector<int>(), Rs, Ts, rvecs, tvecs, again, lengths,
+                                          deviations, covariance, viewCovariances, pointDeviations, perViewErrors, inliers), 1e-5);
+    ASSERT_EQ(points.size(), again.size());
+    EXPECT_NEAR(0, cv::norm(again[17] - points[17]), 1e-3);
+    EXPECT_EQ((int)listed.size(), countNonZero(inliers));
+    observations[5][1] = 2;
+    EXPECT_REFUSED(refractiveBundleAdjust(observations, listed, cameras, std::vector<int>(), Rs, Ts, rvecs, tvecs, again, lengths,
+                                          deviations, covariance, viewCovariances, pointDeviations, perViewErrors, inliers),
+                   "observations[5] is of camera 2");
 }
 
 }} // namespace

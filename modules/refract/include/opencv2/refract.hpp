@@ -1539,9 +1539,10 @@ scale of known lengths.
 One view: the rig does not move, as in motion capture and particle tracking. Each point is one observed position of an object:
 a wand of known length at M/2 times gives M points, and M/2 lengths between them. Several views: the rig (or one camera) moves
 through a static scene. Everything is one maximum-likelihood fit with equal isotropic pixel noise, which is estimated. The
-points are eliminated (Schur complement), as in @cite Triggs2000. The poses of all views remain, as one dense system: the cost
-of an iteration grows with the cube of the number of views, the memory with its square. Some hundreds of views are the limit; of
-a film, take keyframes (doc/performance.md has times).
+points are eliminated (Schur complement), as in @cite Triggs2000, then the poses, by a sparse Cholesky: where each point is seen
+by few views that are near each other, as in a strip, time and memory grow with the number of views. Where all views see the
+same points, the cost of an iteration grows with the cube of their number (doc/performance.md has times). With many views and
+points, the form that takes a list of observations needs less memory.
 
 The scene's frame is that of the first view, whose pose is fixed; with one view and without rvecs, tvecs it is the frame of
 camera 1. The scale comes from lengths, from R and T of several cameras if these are not free or have a covariance, or from the
@@ -1599,6 +1600,50 @@ CV_EXPORTS_AS(refractiveBundleAdjustExtended) double refractiveBundleAdjust(
         TermCriteria criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 1000, 1e-12),
         InputArrayOfArrays cameraCovariances = noArray(),
         const std::vector<std::vector<Mat> >& pixelCovariances = std::vector<std::vector<Mat> >(),
+        InputArray rigCovariance = noArray(), double lengthScaleStd = 0);
+
+/** @overload
+The form for many views (hundreds to thousands of images of a large scene), each of which sees few of the points: a list of
+observations, in any order. Its results are those of the form above, which takes every view by every point. Memory grows with
+the list.
+@param observations Nx3 int32, one row an observation: view, camera, point, each counted from 0; or std::vector<Vec3i>. Also
+float64, of whole numbers. Views are those of rvecs, points those of points3D (where these are empty, as many as the list has).
+Two rows may be of the same point in the same image: they are two observations.
+@param imagePoints N pixels, one for each row of observations. One coordinate NaN: half a pixel. Both NaN: not seen.
+@param cameras as above.
+@param windowOfCamera as above.
+@param Rs as above.
+@param Ts as above.
+@param rvecs as above, one per view; one that no observation is of may be NaN, and is NaN in the result.
+@param tvecs as rvecs.
+@param points3D as above.
+@param lengths as above.
+@param stdDeviations as above.
+@param covariance as above.
+@param viewCovariances one 6x6 CV_64F covariance of (rvec, tvec) per view, including the uncertainty of cameras and points; 0
+where a pose is exact, NaN where the view has no observation in use.
+@param pointDeviations as above.
+@param perViewErrors as above.
+@param inliers Nx1 CV_8U, one for each row of observations: 0 where the point was not seen or was rejected.
+@param flags as above.
+@param poseCovariances as above.
+@param criteria as above.
+@param cameraCovariances as above.
+@param pixelCovariances the covariance of each pixel of the list, see the conventions; noArray(): all are usual ones.
+@param rigCovariance as above.
+@param lengthScaleStd as above.
+@return RMS reprojection error in pixels over all points that were used.
+*/
+CV_EXPORTS_AS(refractiveBundleAdjustSparse) double refractiveBundleAdjust(
+        InputArray observations, InputArray imagePoints,
+        const std::vector<Ptr<RefractiveCamera> >& cameras, const std::vector<int>& windowOfCamera,
+        InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts,
+        InputOutputArrayOfArrays rvecs, InputOutputArrayOfArrays tvecs,
+        InputOutputArray points3D, InputArray lengths,
+        OutputArray stdDeviations, OutputArray covariance, OutputArrayOfArrays viewCovariances, OutputArray pointDeviations,
+        OutputArray perViewErrors, OutputArray inliers, int flags = 0, InputArrayOfArrays poseCovariances = noArray(),
+        TermCriteria criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 1000, 1e-12),
+        InputArrayOfArrays cameraCovariances = noArray(), InputArray pixelCovariances = noArray(),
         InputArray rigCovariance = noArray(), double lengthScaleStd = 0);
 
 /** @overload

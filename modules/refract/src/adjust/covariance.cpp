@@ -10,6 +10,8 @@ required and whose standard deviation is so large that the value is no answer. *
 #include "adjust/covariance.hpp"
 #include "adjust/distance_profile.hpp"
 #include "math/dense.hpp"
+#include <numeric>
+#include <opencv2/core/eigen.hpp>
 
 namespace cv { namespace refract {
 
@@ -181,34 +183,24 @@ FitOutcome Covariance::compute(const Problem& problem, double variance, int requ
     variance_ = variance;
     information_ = informationOf(problem);
     const std::vector<FreeParameter> parameters = freeParameters(problem, required);
-    InnerBlock poses;           // of a scene
-    int lost;
-    const Information ofCameras = eliminateLast(information_, (int)parameters.size(), poses, lost);
-    if (lost >= 0)
+    const FreeSpace space(problem);
+    if (information_.poses.factor.lost() >= 0)
     {
         FitOutcome outcome(FitOutcome::POSE_UNDETERMINED);
-        const FreeSpace space(problem);
-        for (int block = 0; block < problem.outerCount(); block++)
-            if (space.first[block] <= lost)
-                outcome.view = problem.blocks()[block].index;
+        for (int view = 0; view < problem.viewCount(); view++)
+            if (space.placeOf(problem.poseBlock(view)) == information_.poses.factor.lost())
+                outcome.view = view;
         return outcome;
     }
     MatrixXd half;
-    FitOutcome outcome = setHalf(parameters, ofCameras, half);
+    FitOutcome outcome = setHalf(parameters, information_, half);
     if (outcome.converged())
         outcome = checkSigmas(parameters, half, variance);
     if (!outcome.converged())
         return outcome;
     // What the cameras' covariance says of a weak direction so holds for poses and points.
-    const int count = (int)half.rows(), others = (int)poses.byOuter.rows();
-    ofCameras_ = Size((int)half.cols(), count);
-    half_ = MatrixXd::Zero(count + others, half.cols() + poses.half.cols());
-    half_.topLeftCorner(count, half.cols()) = half;
-    if (others > 0)
-    {
-        half_.bottomLeftCorner(others, half.cols()) = product(poses.byOuter, half);
-        half_.bottomRightCorner(others, poses.half.cols()) = poses.half;
-    }
+    outer_ = OuterCovariance(information_, half);
+    cameras_ = space.cameraCount();
     setParameters();
     return outcome;
 }
@@ -216,16 +208,20 @@ FitOutcome Covariance::compute(const Problem& problem, double variance, int requ
 void Covariance::setParameters()
 {
     ofParameters = MatrixXd::Zero(problem_->publicCount(), problem_->publicCount());
-    if (ofCameras_.area() == 0)         // only poses or points are free; Eigen has no products of nothing
+    const MatrixXd half = outer_.half().topRows(cameras_);
+    if (half.size() == 0)               // only poses or points are free; Eigen has no products of nothing
         return;
-    const MatrixXd all = product(problem_->publicBasis(), half_.topLeftCorner(ofCameras_.height, ofCameras_.width));
+    const MatrixXd all = product(problem_->publicBasis(), half);
     ofParameters = variance_*timesTranspose(all, all);
 }
 
 void Covariance::widen(Problem& problem)
 {
-    if (widenByDistanceProfiles(problem, information_, variance_, half_))
-        setParameters();
+    MatrixXd half = outer_.half();
+    if (!widenByDistanceProfiles(problem, information_, variance_, half))
+        return;
+    outer_.setHalf(half);
+    setParameters();
 }
 
 //! X = (1 + e) p, with the points p in the unit of the lengths and the error e that these share.
@@ -240,22 +236,37 @@ Mat Covariance::ofPoints() const
         for (int i = range.start; i < range.end; i++)
         {
             const InnerBlock& block = information_.inner[i];
-            MatrixXd outer(block.columns.size(), half_.cols());
-            for (size_t k = 0; k < block.columns.size(); k++)
-                outer.row(k) = half_.row(block.columns[k]);
             VectorXd variances = scale*scale*block.half.rowwise().squaredNorm();
-            MatrixXd byOuter = MatrixXd::Zero(clusters[i].size(), half_.cols());
-            if (outer.size() > 0)
-                byOuter = scale*product(block.byOuter, outer);
+            MatrixXd byOuter = scale*block.byOuter;
             if (error >= 0)
-                byOuter += clusters[i].values*half_.row(error);
-            variances += byOuter.rowwise().squaredNorm();
+                byOuter.col(std::lower_bound(block.columns.begin(), block.columns.end(), error) - block.columns.begin()) +=
+                    clusters[i].values;
+            if (byOuter.size() > 0)
+                variances += product(byOuter, outer_.of(block.columns)).cwiseProduct(byOuter).rowwise().sum();
             for (int k = 0; k < clusters[i].size(); k++)
                 deviations(clusters[i].points[k/3], k % 3) = block.isDetermined ? std::sqrt(variance_*variances[k])
                                                                                 : std::numeric_limits<double>::infinity();
         }
     });
     return deviations;
+}
+
+std::vector<Mat> Covariance::ofPoses() const
+{
+    const FreeSpace space(*problem_);
+    std::vector<Mat> all;
+    for (int view = 0; view < problem_->viewCount(); view++)
+    {
+        const int block = problem_->poseBlock(view);
+        const double isSeen = problem_->pose(view).found ? 0 : std::numeric_limits<double>::quiet_NaN();
+        all.push_back(Mat(6, 6, CV_64F, Scalar(isSeen)));
+        if (space.placeOf(block) < 0)
+            continue;
+        std::vector<int> columns(6);
+        std::iota(columns.begin(), columns.end(), space.first[block]);
+        eigen2cv(MatrixXd(variance_*outer_.of(columns)), all.back());
+    }
+    return all;
 }
 
 }} // namespace

@@ -5,7 +5,7 @@
 #ifndef OPENCV_REFRACT_COVARIANCE_HPP
 #define OPENCV_REFRACT_COVARIANCE_HPP
 
-#include "adjust/eliminate.hpp"
+#include "adjust/outer_covariance.hpp"
 
 namespace cv { namespace refract {
 
@@ -25,14 +25,15 @@ struct Covariance
 
     Eigen::MatrixXd ofParameters;       //!< of the public parameters, P x P; 0 where fixed
     Mat ofPoints() const;               //!< deviations of a scene's points, one row each; NaN: not in use, infinite: undetermined
+    std::vector<Mat> ofPoses() const;   //!< of a scene's views (rvec, tvec): 6x6; 0: known exactly, NaN: without an image
 
 private:
     void setParameters();
     const Problem* problem_ = nullptr;
     double variance_ = 0;
     Information information_;
-    Eigen::MatrixXd half_;              //!< H, H H^T = covariance of all outer parameters for unit pixel noise
-    Size ofCameras_;                    //!< its upper left part: the parameters of cameras and targets
+    OuterCovariance outer_;             //!< for unit pixel noise
+    int cameras_ = 0;                   //!< its first columns: the parameters of cameras and targets
 };
 
 }} // namespace

@@ -8,7 +8,8 @@ S the covariance of the outer ones, its predicted pixel has the covariance
     [F E] C [F E]^T,     C = [ S  S D^T; D S  H H^T + D S D^T ]  */
 
 #include "adjust/deletion.hpp"
-#include "adjust/eliminate.hpp"
+#include "adjust/outer_covariance.hpp"
+#include "math/dense.hpp"
 
 namespace cv { namespace refract {
 
@@ -36,10 +37,13 @@ MatrixXd columnsOf(const MatrixXd& matrix, const std::vector<int>& columns)
 class InnerPrediction
 {
 public:
-    InnerPrediction(const InnerBlock& block, const MatrixXd& S) : S_(S)
+    //! @param columns of the outer parameters that some of these observations depend on; they ascend
+    InnerPrediction(const InnerBlock& block, const std::vector<int>& columns, const OuterCovariance& outer)
+        : columns_(columns), S_(outer.of(columns))
     {
-        cross_ = product(block.byOuter, rowsOf(S, block.columns));
-        ofInner_ = timesTranspose(block.half, block.half) + timesTranspose(columnsOf(cross_, block.columns), block.byOuter);
+        const std::vector<int> own = placesOf(block.columns);
+        cross_ = product(block.byOuter, rowsOf(S_, own));
+        ofInner_ = timesTranspose(block.half, block.half) + timesTranspose(columnsOf(cross_, own), block.byOuter);
     }
 
     //! @param at the first of the block's values that image.inner has the derivatives by
@@ -50,18 +54,43 @@ public:
         Eigen::Matrix2d H = timesTranspose(product(E, ofInner_.block(at, at, size, size)), E);
         if (count > 0)
         {
+            const std::vector<int> own = placesOf(image.columns);
             const MatrixXd F = image.outer.middleRows(2*row, 2);
-            const Eigen::Matrix2d both = timesTranspose(product(E, columnsOf(cross_.middleRows(at, size), image.columns)), F);
-            H += both + both.transpose() +
-                 timesTranspose(product(F, columnsOf(rowsOf(S_, image.columns), image.columns)), F);
+            const Eigen::Matrix2d both = timesTranspose(product(E, columnsOf(cross_.middleRows(at, size), own)), F);
+            H += both + both.transpose() + timesTranspose(product(F, columnsOf(rowsOf(S_, own), own)), F);
         }
         return Matx22d(H(0, 0), H(0, 1), H(1, 0), H(1, 1));
     }
 
 private:
-    const MatrixXd& S_;
+    std::vector<int> placesOf(const std::vector<int>& columns) const
+    {
+        std::vector<int> places;
+        for (int column : columns)
+            places.push_back((int)(std::lower_bound(columns_.begin(), columns_.end(), column) - columns_.begin()));
+        return places;
+    }
+    const std::vector<int>& columns_;
+    const MatrixXd S_;
     MatrixXd cross_, ofInner_;
 };
+
+//! Those of all observations that are asked for, and of the inner block itself.
+std::vector<int> columnsOf(const InnerBlock& block, const std::vector<Observation>& observations,
+                           const std::vector<std::unique_ptr<ImageRows> >& images, const std::vector<std::vector<double> >& weights)
+{
+    std::vector<int> columns = block.columns;
+    int last = -1;
+    for (const Observation& o : observations)
+        if (weights[o.image][o.row] > 0 && o.image != last)
+        {
+            last = o.image;
+            columns.insert(columns.end(), images[last]->columns.begin(), images[last]->columns.end());
+        }
+    std::sort(columns.begin(), columns.end());
+    columns.erase(std::unique(columns.begin(), columns.end()), columns.end());
+    return columns;
+}
 
 //! Which observations are asked for and have an image: they get derivatives as if their weight were one.
 std::vector<std::vector<double> > weightsOfAsked(const Problem& problem, const Masks& isAsked)
@@ -93,7 +122,7 @@ std::vector<Observation> observationsOf(const Problem& problem, int inner)
 std::vector<std::vector<DeletionResidual> > deletionResiduals(const Problem& problem, const Masks& isInlier, const Masks& isAsked)
 {
     const Information information = informationOf(problem, false);
-    const MatrixXd S = pseudoCovariance(information);
+    const OuterCovariance outer(information, pseudoInverseRoot(information));
     const FreeSpace space(problem, false);
     const std::vector<std::vector<double> > weights = weightsOfAsked(problem, isAsked);
     const int count = (int)problem.images().size();
@@ -111,8 +140,10 @@ std::vector<std::vector<DeletionResidual> > deletionResiduals(const Problem& pro
     {
         for (int inner = range.start; inner < range.end; inner++)
         {
-            const InnerPrediction prediction(information.inner[inner], S);
-            for (const Observation& o : observationsOf(problem, inner))
+            const std::vector<Observation> observations = observationsOf(problem, inner);
+            const std::vector<int> columns = columnsOf(information.inner[inner], observations, images, weights);
+            const InnerPrediction prediction(information.inner[inner], columns, outer);
+            for (const Observation& o : observations)
             {
                 if (weights[o.image][o.row] == 0)
                     continue;

@@ -16,10 +16,11 @@ Information informationOf(const Problem& problem, bool withHeld)
     return problem.hasScene() ? eliminatePoints(problem, space, images) : eliminatePoses(problem, space, images);
 }
 
-//! Columns scaled to their effect: the parameters' sizes differ by orders.
+//! Columns of the root scaled to their effect: the parameters' sizes differ by orders.
 static VectorXd scaleOf(const Information& information)
 {
-    return (information.effect.array() > 0).select(information.effect.cwiseInverse(), 0.);
+    const VectorXd effect = information.effect.head(information.root.cols());
+    return (effect.array() > 0).select(effect.cwiseInverse(), 0.);
 }
 
 void setInner(const PivotedQR& qr, const VectorXd& scale, const MatrixXd& rotated, InnerBlock& block)
@@ -32,32 +33,12 @@ void setInner(const PivotedQR& qr, const VectorXd& scale, const MatrixXd& rotate
     block.isDetermined = rank == scale.size();
 }
 
-Information eliminateLast(const Information& information, int first, InnerBlock& last, int& lost)
+VectorXd gradientOfCameras(const Information& information)
 {
-    const int others = (int)information.root.cols() - first, rows = (int)information.root.rows();
-    Information left;
-    left.effect = information.effect.head(first);
-    left.rounding = information.rounding;
-    MatrixXd rotated(rows, first + 1);
-    rotated << information.root.leftCols(first), information.residual;
-    int rank = 0;
-    lost = -1;
-    if (others > 0)
-    {
-        const VectorXd scale = scaleOf(information).tail(others);
-        const PivotedQR qr(information.root.rightCols(others)*scale.asDiagonal(), information.rounding);
-        rank = qr.rank();
-        if (rank < others)
-            lost = first + qr.column(rank);
-        rotated = qr.rotate(rotated);
-        setInner(qr, scale, rotated, last);
-    }
-    for (int i = 0; i < first; i++)
-        last.columns.push_back(i);
-    left.root = rotated.bottomRows(rows - rank).leftCols(first);
-    left.residual = rotated.bottomRows(rows - rank).rightCols<1>();
-    left.ofInner = information.ofInner + rotated.topRows(rank).rightCols<1>().squaredNorm();
-    return left;
+    const VectorXd gradient = transposeTimesVector(information.root, information.residual);
+    if (information.poses.residual.size() == 0)
+        return gradient;
+    return gradient + transposeTimesVector(information.poses.byCameras, information.poses.residual);
 }
 
 double newtonDecrement(const Information& information)
@@ -76,12 +57,6 @@ MatrixXd pseudoInverseRoot(const Information& information)
         return MatrixXd(0, information.root.rows());
     const VectorXd scale = scaleOf(information);
     return scale.asDiagonal()*pseudoInverse(information.root*scale.asDiagonal(), information.rounding);
-}
-
-MatrixXd pseudoCovariance(const Information& information)
-{
-    const MatrixXd half = pseudoInverseRoot(information);
-    return timesTranspose(half, half);
 }
 
 }} // namespace

@@ -5,6 +5,7 @@
 #ifndef OPENCV_REFRACT_ELIMINATE_HPP
 #define OPENCV_REFRACT_ELIMINATE_HPP
 
+#include "adjust/block_cholesky.hpp"
 #include "adjust/linearize.hpp"
 #include "math/dense.hpp"
 
@@ -20,15 +21,28 @@ struct InnerBlock
     bool isDetermined = true;
 };
 
-//! What all images tell of the outer parameters when the inner ones are unknown.
+/** What is eliminated of a scene's views, once its points are: their poses. Those that are adjusted are its blocks, in the order of the
+views; the free space has their columns after those of the cameras. With the factor L of their information, the root of all is
+
+    [ L^T  W ]
+    [ 0    R ],     R: Information::root */
+struct ScenePoses
+{
+    BlockCholesky factor;
+    Eigen::MatrixXd byCameras;      //!< W
+    Eigen::VectorXd residual;       //!< above that of the cameras
+};
+
+//! What all images tell of the cameras' parameters when all others are unknown.
 struct Information
 {
     Eigen::MatrixXd root;           //!< R, R^T R = information for unit pixel noise
-    Eigen::VectorXd effect;         //!< of each parameter alone: the norm of its derivatives
+    Eigen::VectorXd effect;         //!< of each parameter alone, poses of a scene too: the norm of its derivatives
     Eigen::VectorXd residual;       //!< R * (change of the parameters) = -residual is the step to the least squares
-    double ofInner = 0;             //!< sum of squares that the inner blocks alone could still take up
+    double ofInner = 0;             //!< sum of squares that what is eliminated could still take up alone
     double rounding = 0;            //!< what is left of a scaled column below this is rounding
     std::vector<InnerBlock> inner;  //!< of views, or of clusters
+    ScenePoses poses;
 };
 
 //! A view without its pose.
@@ -55,10 +69,8 @@ Information eliminatePoints(const Problem& problem, const FreeSpace& space, cons
 //! The one of both that the problem asks for.
 Information informationOf(const Problem& problem, bool withHeld = true);
 
-/** Information on the first columns alone.
-@param last the others, as they follow from the first
-@param lost the first of the others that is not determined; -1: all are */
-Information eliminateLast(const Information& information, int first, InnerBlock& last, int& lost);
+//! Of half the squared error, by the cameras' free coordinates.
+Eigen::VectorXd gradientOfCameras(const Information& information);
 
 /** How far the least squares of the linearised problem are from where the parameters are, in pixels: divided by a pixel
 coordinate's standard deviation, it is the length of the step in standard deviations of what it moves. */
@@ -66,8 +78,6 @@ double newtonDecrement(const Information& information);
 
 //! R^+; what is not determined has no part in it.
 Eigen::MatrixXd pseudoInverseRoot(const Information& information);
-//! C = (R^T R)^+; what is not determined has no part in it.
-Eigen::MatrixXd pseudoCovariance(const Information& information);
 
 /** Derivatives of all residuals, 2M x (P + 6 V): image by image in the order of images(); columns: the public parameters,
 then the pose of each view; 0 where fixed. One camera. */

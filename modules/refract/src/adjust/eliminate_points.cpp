@@ -7,8 +7,10 @@ the points are unknown is
 
     S = sum over images of F^T F - sum over clusters of (Y E^T F)^T (Y E^T F),     Y^T Y = (E^T E)^+
 
-(the Schur complement; Triggs et al., Bundle adjustment - a modern synthesis, 2000, section 6.1). Columns are scaled to their own
-effect before anything is inverted. Sums are in one order, whatever the number of threads. */
+(the Schur complement; Triggs et al., Bundle adjustment - a modern synthesis, 2000, section 6.1). Poses of views that show no point
+in common have no block in S, and are eliminated in turn, by a sparse Cholesky; what is left is as large as the cameras' parameters
+are many. Columns are scaled to their own effect before anything is inverted. Sums are in one order, whatever the number of threads.
+*/
 
 #include "adjust/eliminate.hpp"
 #include "math/dense.hpp"
@@ -22,23 +24,74 @@ using Eigen::VectorXd;
 
 // What is left of a squared effect below this part of it is rounding.
 const double ROUNDING = 1e-12;
+const int SIZE = BlockCholesky::SIZE;
 
-//! Normal equations of cameras and poses.
+//! Normal equations of cameras and poses. Of matrices with a diagonal the lower half counts.
 struct NormalEquations
 {
-    explicit NormalEquations(int count) : matrix(MatrixXd::Zero(count, count)), gradient(VectorXd::Zero(count)) {}
-    MatrixXd matrix;            //!< lower half
+    NormalEquations(int cameras, const BlockGraph& graph)
+        : ofCameras(MatrixXd::Zero(cameras, cameras)), ofPoses(graph), ofBoth(MatrixXd::Zero(SIZE*ofPoses.count(), cameras)),
+          gradient(VectorXd::Zero(cameras + SIZE*ofPoses.count())) {}
+    MatrixXd ofCameras;
+    BlockCholesky ofPoses;
+    MatrixXd ofBoth;            //!< by the poses, by the cameras
     VectorXd gradient;
+
+    //! @param columns of cameras, and of one pose
     void add(const MatrixXd& products, const VectorXd& ownGradient, const std::vector<int>& columns)
     {
         for (size_t c = 0; c < columns.size(); c++)
         {
             gradient[columns[c]] += ownGradient[c];
             for (size_t r = c; r < columns.size(); r++)
-                matrix(std::max(columns[r], columns[c]), std::min(columns[r], columns[c])) += products(r, c);
+                at(std::max(columns[r], columns[c]), std::min(columns[r], columns[c])) += products(r, c);
         }
     }
+    VectorXd effect() const
+    {
+        VectorXd squares(gradient.size());
+        squares << ofCameras.diagonal(), ofPoses.diagonal();
+        return squares.cwiseSqrt();
+    }
+
+private:
+    double& at(int row, int column)
+    {
+        const int cameras = (int)ofCameras.cols(), pose = row - cameras;
+        if (pose < 0)
+            return ofCameras(row, column);
+        if (column < cameras)
+            return ofBoth(pose, column);
+        return ofPoses.column(ofPoses.at(pose/SIZE)).diagonal(pose % SIZE, (column - cameras) % SIZE);
+    }
 };
+
+//! Views are neighbours where they show points of one cluster, whatever the weights: which ones are outliers changes.
+BlockGraph graphOf(const Problem& problem, const FreeSpace& space)
+{
+    const int views = space.adjustedViews();
+    std::vector<std::vector<bool> > areNeighbours(views, std::vector<bool>(views, false));
+    std::vector<int> seen;
+    for (int cluster = 0; cluster < (int)problem.scene().clusters().size(); cluster++)
+    {
+        seen.clear();
+        for (const Observation& o : problem.observationsOf(cluster))
+        {
+            const int view = space.placeOf(problem.poseBlock(problem.images()[o.image].view));
+            if (view >= 0 && (seen.empty() || seen.back() != view))     // images come view by view
+                seen.push_back(view);
+        }
+        for (int a : seen)
+            for (int b : seen)
+                areNeighbours[a][b] = true;
+    }
+    BlockGraph graph(views);
+    for (int a = 0; a < views; a++)
+        for (int b = 0; b < views; b++)
+            if (a != b && areNeighbours[a][b])
+                graph[a].push_back(b);
+    return graph;
+}
 
 void addImages(const std::vector<ImageRows>& images, NormalEquations& equations)
 {
@@ -96,7 +149,7 @@ void addPriors(const Problem& problem, const FreeSpace& space, NormalEquations& 
 struct EliminatedCluster
 {
     InnerBlock points;
-    MatrixXd W;                 //!< Y E^T F
+    MatrixXd W;                 //!< (Y E^T F)^T
     VectorXd residual;          //!< Y E^T r
 };
 
@@ -127,17 +180,17 @@ std::vector<int> columnsOf(const Problem& problem, int cluster, const std::vecto
     return columns;
 }
 
-EliminatedCluster eliminate(const Problem& problem, int index, const FreeSpace& space, const std::vector<ImageRows>& images)
+/** @param place of each column among those of the cluster: room for it */
+EliminatedCluster eliminate(const Problem& problem, int index, const std::vector<ImageRows>& images, std::vector<int>& place)
 {
     const Cluster& cluster = problem.scene().clusters()[index];
     EliminatedCluster result;
     result.points.columns = columnsOf(problem, index, images);
     const std::vector<int>& columns = result.points.columns;
-    std::vector<int> place(space.count, -1);
     for (size_t k = 0; k < columns.size(); k++)
         place[columns[k]] = (int)k;
     const int size = cluster.size();
-    MatrixXd EE = MatrixXd::Zero(size, size), EF = MatrixXd::Zero(size, columns.size());
+    MatrixXd EE = MatrixXd::Zero(size, size), FE = MatrixXd::Zero(columns.size(), size);
     VectorXd Er = VectorXd::Zero(size);
     for (const Observation& o : problem.observationsOf(index))
     {
@@ -148,38 +201,38 @@ EliminatedCluster eliminate(const Problem& problem, int index, const FreeSpace& 
         const int at = 3*problem.scene().placeInCluster(problem.images()[o.image].points.index[o.row]);
         EE.block<3, 3>(at, at) += E.transpose()*E;
         Er.segment<3>(at) += E.transpose()*image.residuals.segment<2>(2*o.row);
-        for (size_t c = 0; c < image.columns.size(); c++)
-            EF.block<3, 1>(at, place[image.columns[c]]) += E.transpose()*image.outer.block<2, 1>(2*o.row, c);
+        const double* const u = image.outer.data() + 2*o.row*image.outer.cols();
+        const double* const v = u + image.outer.cols();
+        for (int k = 0; k < 3; k++)
+            for (size_t c = 0; c < image.columns.size(); c++)
+                FE(place[image.columns[c]], at + k) += E(0, k)*u[c] + E(1, k)*v[c];
     }
     cluster.addLengths(problem.pixelSigma(), EE, Er);
     const MatrixXd Y = inverseRoot(EE, result.points.isDetermined);
-    result.W = product(Y, EF);
+    result.W = timesTranspose(FE, Y);
     result.residual = timesVector(Y, Er);
     result.points.half = Y.transpose();
-    result.points.byOuter = -transposeTimes(Y, result.W);
+    result.points.byOuter = -product(result.W, Y).transpose();
     result.points.step = -transposeTimesVector(Y, result.residual);
     return result;
 }
 
-//! Subtracts W^T W of many clusters at a time, as products of large matrices are faster.
+//! Subtracts W W^T of many clusters from the cameras' equations at a time, as products of large matrices are faster.
 class ProductsOfRows
 {
 public:
-    explicit ProductsOfRows(NormalEquations& equations)
-        : equations_(equations), rows_(MatrixXd::Zero(MANY, equations.matrix.cols())), used_(0) {}
+    explicit ProductsOfRows(MatrixXd& equations) : equations_(equations), rows_(MatrixXd::Zero(MANY, equations.cols())), used_(0) {}
 
     void subtract(const EliminatedCluster& cluster)
     {
-        const int size = (int)cluster.W.rows();
+        const int size = (int)cluster.W.cols();
         if (used_ + size > rows_.rows())
             flush();
         if (size > rows_.rows())
             rows_ = MatrixXd::Zero(size, rows_.cols());
-        for (size_t k = 0; k < cluster.points.columns.size(); k++)
-        {
-            rows_.block(used_, cluster.points.columns[k], size, 1) = cluster.W.col(k);
-            equations_.gradient[cluster.points.columns[k]] -= cluster.W.col(k).dot(cluster.residual);
-        }
+        const std::vector<int>& columns = cluster.points.columns;
+        for (size_t k = 0; k < columns.size() && columns[k] < rows_.cols(); k++)
+            rows_.block(used_, columns[k], size, 1) = cluster.W.row(k).transpose();
         used_ += size;
     }
 
@@ -192,7 +245,7 @@ public:
             {
                 const int begin = panel*PANEL, width = std::min(PANEL, count - begin);
                 subtractTransposeTimes(rows_.topRows(used_).rightCols(count - begin), rows_.topRows(used_).middleCols(begin, width),
-                                       equations_.matrix.block(begin, begin, count - begin, width));
+                                       equations_.block(begin, begin, count - begin, width));
             }
         });
         rows_.setZero();
@@ -201,22 +254,102 @@ public:
 
 private:
     static const int MANY = 384, PANEL = 64;
-    NormalEquations& equations_;
+    MatrixXd& equations_;
     MatrixXd rows_;
     int used_;
 };
 
-/** R and z, R^T R = S and R^T z = gradient.
-@param effect to which the columns are scaled */
-void setRoot(const NormalEquations& equations, Information& information)
+//! One pose in the W of one cluster.
+struct PoseColumns
 {
-    const VectorXd& effect = information.effect;
+    const EliminatedCluster* cluster;
+    int first;
+};
+
+//! Subtracts what clusters tell of one view's pose, together with the cameras and the poses that are eliminated after it.
+void subtractPose(int view, const std::vector<PoseColumns>& seen, std::vector<int>& entry, NormalEquations& equations)
+{
+    const int cameras = (int)equations.ofCameras.cols();
+    BlockCholesky& poses = equations.ofPoses;
+    BlockCholesky::Column& column = poses.column(poses.at(view));
+    for (size_t i = 0; i < column.rows.size(); i++)
+        entry[column.rows[i]] = (int)i;
+    for (const PoseColumns& own : seen)
+    {
+        const std::vector<int>& columns = own.cluster->points.columns;
+        const MatrixXd& W = own.cluster->W;
+        for (int point = 0; point < (int)W.cols(); point += 3)
+        {
+            const Eigen::Matrix<double, SIZE, 3> ofView = W.block<SIZE, 3>(own.first, point);
+            column.diagonal.noalias() -= ofView.lazyProduct(ofView.transpose());
+            size_t k = 0;
+            for (; k < columns.size() && columns[k] < cameras; k++)
+                equations.ofBoth.col(columns[k]).segment<SIZE>(SIZE*view).noalias() -=
+                    ofView.lazyProduct(W.block<1, 3>(k, point).transpose());
+            for (; k < columns.size(); k += SIZE)
+            {
+                const int other = poses.at((columns[k] - cameras)/SIZE);
+                if (other > poses.at(view))
+                    column.blocks[entry[other]].noalias() -= W.block<SIZE, 3>(k, point).lazyProduct(ofView.transpose());
+            }
+        }
+    }
+}
+
+//! From all but the cameras' own. Each pose by itself, the clusters in their order, so that threads make no difference.
+void subtractPoses(const std::vector<EliminatedCluster>& clusters, NormalEquations& equations)
+{
+    const int cameras = (int)equations.ofCameras.cols(), views = equations.ofPoses.count();
+    std::vector<std::vector<PoseColumns> > seen(views);
+    for (const EliminatedCluster& cluster : clusters)
+    {
+        const std::vector<int>& columns = cluster.points.columns;
+        for (size_t k = 0; k < columns.size(); k++)
+        {
+            equations.gradient[columns[k]] -= cluster.W.row(k).dot(cluster.residual);
+            if (columns[k] >= cameras && (columns[k] - cameras) % SIZE == 0)
+                seen[(columns[k] - cameras)/SIZE].push_back({ &cluster, (int)k });
+        }
+    }
+    parallel_for_(Range(0, views), [&](const Range& range)
+    {
+        std::vector<int> entry(views);
+        for (int view = range.start; view < range.end; view++)
+            subtractPose(view, seen[view], entry, equations);
+    });
+}
+
+/** Poses are eliminated as points were; then R and z, R^T R = what is left for the cameras and R^T z = its gradient.
+@param information with the effects to which columns are scaled */
+void setRoot(NormalEquations& equations, Information& information)
+{
+    const int cameras = (int)equations.ofCameras.cols(), ofPoses = SIZE*equations.ofPoses.count();
+    ScenePoses& poses = information.poses;
+    equations.ofPoses.factor(information.effect.tail(ofPoses), ROUNDING);
+    MatrixXd both(ofPoses, cameras + 1);
+    both << equations.ofBoth, equations.gradient.tail(ofPoses);
+    equations.ofPoses.solveL(both);
+    poses.byCameras = both.leftCols(cameras);
+    poses.residual = both.col(cameras);
+    poses.factor = std::move(equations.ofPoses);
+    information.ofInner += poses.residual.squaredNorm();
+    information.root.resize(cameras, cameras);
+    information.residual.resize(cameras);
+    if (cameras == 0)
+        return;
+    VectorXd gradient = equations.gradient.head(cameras);
+    if (ofPoses > 0)                // Eigen has no products of nothing
+    {
+        gradient -= transposeTimesVector(poses.byCameras, poses.residual);
+        addGram(poses.byCameras, -1, equations.ofCameras);
+    }
+    const VectorXd effect = information.effect.head(cameras);
     const VectorXd scale = (effect.array() > 0).select(effect.cwiseInverse(), 0.);
-    const LDLT ldlt(scale.asDiagonal()*equations.matrix*scale.asDiagonal());
+    const LDLT ldlt(scale.asDiagonal()*equations.ofCameras*scale.asDiagonal());
     const VectorXd D = ldlt.D();
     const VectorXd roots = (D.array() > ROUNDING).select(D.cwiseMax(0).cwiseSqrt(), 0.);
     information.root = roots.asDiagonal()*ldlt.L().transpose()*effect.asDiagonal();
-    const VectorXd z = ldlt.solveL(scale.cwiseProduct(equations.gradient));
+    const VectorXd z = ldlt.solveL(scale.cwiseProduct(gradient));
     information.residual = (roots.array() > 0).select(z.cwiseQuotient(roots), 0.);
 }
 
@@ -224,23 +357,26 @@ void setRoot(const NormalEquations& equations, Information& information)
 
 Information eliminatePoints(const Problem& problem, const FreeSpace& space, const std::vector<ImageRows>& images)
 {
-    NormalEquations equations(space.count);
+    NormalEquations equations(space.cameraCount(), graphOf(problem, space));
     addImages(images, equations);
     addPriors(problem, space, equations);
     Information information;
-    information.effect = equations.matrix.diagonal().cwiseSqrt();
+    information.effect = equations.effect();
+    information.rounding = std::sqrt(ROUNDING);
     const int count = (int)problem.scene().clusters().size();
     information.inner.resize(count);
-    ProductsOfRows products(equations);
-    const int MANY = 512;       // clusters at a time
+    ProductsOfRows products(equations.ofCameras);
+    const int MANY = 4096;      // clusters at a time
     for (int begin = 0; begin < count; begin += MANY)
     {
         std::vector<EliminatedCluster> some(std::min(MANY, count - begin));
         parallel_for_(Range(0, (int)some.size()), [&](const Range& range)
         {
+            std::vector<int> place(space.count);
             for (int i = range.start; i < range.end; i++)
-                some[i] = eliminate(problem, begin + i, space, images);
+                some[i] = eliminate(problem, begin + i, images, place);
         });
+        subtractPoses(some, equations);
         for (size_t i = 0; i < some.size(); i++)
         {
             products.subtract(some[i]);
@@ -249,9 +385,7 @@ Information eliminatePoints(const Problem& problem, const FreeSpace& space, cons
         }
     }
     products.flush();
-    if (space.count > 0)
-        setRoot(equations, information);
-    information.rounding = std::sqrt(ROUNDING);
+    setRoot(equations, information);
     return information;
 }
 

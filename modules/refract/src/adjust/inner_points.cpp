@@ -108,14 +108,14 @@ bool optimizePoints(Problem& problem, double& squaredError)
                 ClusterSearch& search = searches[i];
                 if (search.isDone)
                     continue;
-                const ClusterSquares now = rows.squaresOf(i);
+                ClusterSquares now = rows.squaresOf(i);
                 if (round > 0 && !(now.value < search.best.value))
                     search.control.reject();
                 else
                 {
                     if (round > 0)
                         search.control.accept();
-                    search.best = now;
+                    search.best = std::move(now);
                     search.values = clusters[i].values;
                 }
             }

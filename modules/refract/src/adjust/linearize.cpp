@@ -6,7 +6,7 @@
 
 namespace cv { namespace refract {
 
-FreeSpace::FreeSpace(const Problem& problem, bool withHeld) : count(0)
+FreeSpace::FreeSpace(const Problem& problem, bool withHeld) : count(0), cameras_(0)
 {
     for (int i = 0; i < problem.outerCount(); i++)
     {
@@ -15,6 +15,7 @@ FreeSpace::FreeSpace(const Problem& problem, bool withHeld) : count(0)
         bases.push_back(isUnused ? Eigen::MatrixXd(block.values.size(), 0) : block.tangentBasis(withHeld));
         first.push_back(count);
         count += (int)bases.back().cols();
+        cameras_ = block.kind == ParameterBlock::POSE ? cameras_ : count;
     }
 }
 

@@ -15,10 +15,18 @@ struct FreeSpace
     //! @param withHeld also those that are held on their bound
     explicit FreeSpace(const Problem& problem, bool withHeld = true);
     int columnsOf(int block) const { return (int)bases[block].cols(); }
+    //! Of the blocks before the poses; of a scene the others are those of the views that are adjusted, six each.
+    int cameraCount() const { return cameras_; }
+    int adjustedViews() const { return (count - cameras_)/6; }
+    //! Which of these a view's pose is; -1: it is not adjusted.
+    int placeOf(int poseBlock) const { return columnsOf(poseBlock) > 0 ? (first[poseBlock] - cameras_)/6 : -1; }
 
     std::vector<Eigen::MatrixXd> bases;     //!< of each block
     std::vector<int> first;                 //!< column of each block
     int count;
+
+private:
+    int cameras_;
 };
 
 //! One image's residuals and their derivatives.
@@ -26,7 +34,7 @@ struct ImageRows
 {
     Eigen::VectorXd residuals;      //!< u, v of each point
     RowMajorMatrix inner;           //!< by what is eliminated: the pose of a target (0 if it is fixed), or each point of a scene
-    Eigen::MatrixXd outer;          //!< by the free parameters that the image depends on
+    RowMajorMatrix outer;           //!< by the free parameters that the image depends on
     std::vector<int> columns;       //!< which these are, in the free space
 
     //! @param rootWeights in place of the image's own

@@ -36,15 +36,16 @@ struct TrustRegion
     ceres::TerminationType outcome = ceres::NO_CONVERGENCE;     //!< out
     bool isIdle = false;    //!< out: the same again would not move anything
 
-    void solve(ceres::Problem& problem);
+    void solve(ceres::Problem& problem, bool isSparse);
 };
 
-void TrustRegion::solve(ceres::Problem& problem)
+void TrustRegion::solve(ceres::Problem& problem, bool isSparse)
 {
     ceres::Solver::Options options;
     const double firstRadius = options.initial_trust_region_radius;
     options.trust_region_strategy_type = strategy;
-    options.linear_solver_type = ceres::DENSE_QR;
+    const bool hasSparse = options.sparse_linear_algebra_library_type != ceres::NO_SPARSE;     // a Ceres that was built without has none
+    options.linear_solver_type = !isSparse ? ceres::DENSE_QR : hasSparse ? ceres::SPARSE_NORMAL_CHOLESKY : ceres::DENSE_NORMAL_CHOLESKY;
     options.max_num_iterations = iterations;
     options.initial_trust_region_radius = radius;
     options.function_tolerance = change;
@@ -96,6 +97,7 @@ public:
 
 private:
     bool solve(TrustRegion& region);
+    void solve(TrustRegion& region, const std::vector<double*>& state);
     bool isOnBound() const;
     bool holdAtBounds();
     bool touchesTarget(int block) const;
@@ -128,41 +130,58 @@ Minimization::Minimization(Problem& problem) : problem_(problem), retreat_(probl
     }
 }
 
+//! From the state of the cost, and there.
+void Minimization::solve(TrustRegion& region, const std::vector<double*>& state)
+{
+    ceres::Problem::Options options;
+    options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    options.evaluation_callback = cost_.get();
+    ceres::Problem problem(options);
+    for (size_t k = 0; k < state.size(); k++)
+    {
+        ParameterBlock block = problem_.blocks()[cost_->variableBlocks()[k]];
+        new (&block.values) Eigen::Map<Eigen::VectorXd>(state[k], block.values.size());
+        addBlock(problem, block);
+    }
+    std::vector<std::unique_ptr<ReducedCost::Group> > groups;
+    for (int i = 0; i < cost_->groupCount(); i++)
+    {
+        groups.emplace_back(new ReducedCost::Group(*cost_, i));
+        std::vector<double*> parameters;
+        for (int block : groups.back()->blocks())
+            parameters.push_back(state[block]);
+        problem.AddResidualBlock(groups.back().get(), nullptr, parameters);
+    }
+    region.solve(problem, groups.size() > 1);
+}
+
 /** The problem comes to where Ceres ends, and the cost is linearised there.
 @return false if the cost has no derivatives where it begins */
 bool Minimization::solve(TrustRegion& region)
 {
     if (!cost_)
         cost_.reset(new ReducedCost(problem_));
-    ceres::Problem::Options options;
-    options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    ceres::Problem problem(options);
     // Ceres has values of its own while it solves: the problem's are where the cost was asked for last.
     std::vector<Eigen::VectorXd> values;
-    std::vector<double*> parameters;
+    std::vector<double*> state;
     for (int i : cost_->variableBlocks())
         values.push_back(problem_.blocks()[i].values);
     const std::vector<Eigen::VectorXd> begin = values;
     const Eigen::VectorXd inner = innerValues(problem_);
-    for (size_t k = 0; k < values.size(); k++)
-    {
-        ParameterBlock block = problem_.blocks()[cost_->variableBlocks()[k]];
-        new (&block.values) Eigen::Map<Eigen::VectorXd>(values[k].data(), values[k].size());
-        addBlock(problem, block);
-        parameters.push_back(values[k].data());
-    }
-    if (!cost_->linearizeAt(parameters.data()))
+    for (Eigen::VectorXd& block : values)
+        state.push_back(block.data());
+    cost_->setState(state);
+    if (!cost_->linearize())
         return false;
-    if (parameters.empty())         // only inner blocks are free
+    if (state.empty())              // only inner blocks are free
     {
         region.outcome = ceres::CONVERGENCE;
         region.iterations = 1;
         region.isIdle = true;
         return true;
     }
-    problem.AddResidualBlock(cost_.get(), nullptr, parameters);
-    region.solve(problem);
-    if (cost_->linearizeAt(parameters.data()))
+    solve(region, state);
+    if (cost_->linearize())
         return true;
     for (size_t k = 0; k < begin.size(); k++)
         problem_.blocks()[cost_->variableBlocks()[k]].values = begin[k];
@@ -218,10 +237,9 @@ bool Minimization::retreat(int b)
 bool Minimization::holdAtBounds()
 {
     const FreeSpace space(problem_);
-    const Information information = informationOf(problem_);
-    const Eigen::VectorXd gradient = transposeTimesVector(information.root, information.residual);
+    const Eigen::VectorXd gradient = gradientOfCameras(informationOf(problem_));
     bool changed = false;
-    for (int b = 0; b < problem_.outerCount(); b++)
+    for (int b = 0; b < problem_.cameraBlockCount(); b++)
     {
         ParameterBlock& block = problem_.blocks()[b];
         const Eigen::VectorXd ofBlock = timesVector(space.bases[b], gradient.segment(space.first[b], space.columnsOf(b)));

@@ -67,6 +67,19 @@ struct Image
                                                       [](double w) { return w > 0; }); }
 };
 
+//! One image of a scene, as it is given: its points' indices are those of the scene.
+struct SceneImage
+{
+    int view, camera;
+    ImagePoints points;
+};
+
+/** Images of pixels per camera, per view: one per scene point, or none. Those that show nothing are left out.
+@param covariances of the pixels, or empty
+@param variance as RigViews' */
+std::vector<SceneImage> sceneImages(const std::vector<PixelViews>& pixels,
+                                    const std::vector<CovarianceViews>& covariances = std::vector<CovarianceViews>(), double variance = 1);
+
 typedef std::vector<std::vector<uchar> > Masks;     //!< per image, per point of it; 1: an inlier
 
 //! One point in one image: which of the image's points it is.
@@ -95,17 +108,14 @@ public:
     Problem(const Rig& rig, const RigViews& views, const std::vector<Pose>& poses, const std::vector<PosePrior>& posePriors,
             const std::vector<CameraPrior>& cameraPriors, int flags, const Eigen::MatrixXd& targetCovariance = Eigen::MatrixXd());
     /** A scene.
-    @param pixels per camera, per view: one per scene point, or none
+    @param images view by view
     @param cameraPriors one per camera, or empty
-    @param covariances of the pixels, or empty
-    @param variance as RigViews'
     @param rigCovariance of the public parameters, which start where they are known: what has a variance is estimated within it,
     for the rest the flags decide; empty: nothing is known
     @param lengthScaleSigma of a relative error that all lengths share; 0: there is none; NaN: nothing is known of it */
-    Problem(const Rig& rig, const std::vector<PixelViews>& pixels, int pointCount, const std::vector<KnownLength>& lengths,
+    Problem(const Rig& rig, const std::vector<SceneImage>& images, int pointCount, const std::vector<KnownLength>& lengths,
             const std::vector<Pose>& poses, const std::vector<PosePrior>& posePriors, int flags,
             const std::vector<CameraPrior>& cameraPriors = std::vector<CameraPrior>(),
-            const std::vector<CovarianceViews>& covariances = std::vector<CovarianceViews>(), double variance = 1,
             const Eigen::MatrixXd& rigCovariance = Eigen::MatrixXd(), double lengthScaleSigma = 0);
     Problem(const Problem&) = delete;
     Problem& operator=(const Problem&) = delete;
@@ -217,6 +227,7 @@ private:
     void setRigPrior(const Eigen::MatrixXd& covariance);
     void addCameraBlocks(int camera, const CameraPrior& prior, int flags);
     void addImages(const RigViews& views);
+    void addImage(int view, int camera, bool refracted, const ImagePoints& points);
     uchar project(const Image& image, const SimilarityTransform& placed, int row, Point2d& pixel) const;
     bool isActive(int block) const;
     int blockOf(ParameterBlock::Kind kind, int camera) const;

@@ -19,19 +19,24 @@ std::vector<double> sixOf(const Pose& pose)
     return six;
 }
 
-RigViews viewsOfScene(const std::vector<PixelViews>& pixels, int pointCount, const std::vector<CovarianceViews>& covariances,
-                      double variance)
-{
-    RigViews views;
-    const int count = (int)pixels[0].size();
-    views.object.assign(count, std::vector<Point3d>(pointCount));
-    views.variance = variance;
-    for (size_t c = 0; c < pixels.size(); c++)
-        views.cameras.push_back({ PixelViews(count), pixels[c], {}, covariances.empty() ? CovarianceViews() : covariances[c] });
-    return views;
-}
-
 } // namespace
+
+std::vector<SceneImage> sceneImages(const std::vector<PixelViews>& pixels, const std::vector<CovarianceViews>& covariances,
+                                    double variance)
+{
+    std::vector<SceneImage> images;
+    for (size_t view = 0; view < pixels[0].size(); view++)
+        for (size_t c = 0; c < pixels.size(); c++)
+        {
+            const std::vector<Point2d>& own = pixels[c][view];
+            const bool areKnown = !covariances.empty() && !covariances[c].empty();
+            const ImagePoints points = observed(std::vector<Point3d>(own.size()), own,
+                                                areKnown ? covariances[c][view] : PixelCovariances(), variance);
+            if (!points.pixel.empty())
+                images.push_back({ (int)view, (int)c, points });
+        }
+    return images;
+}
 
 Problem::Problem(const Rig& rig, const RigViews& views, const std::vector<Pose>& poses, const std::vector<PosePrior>& posePriors,
                  const std::vector<CameraPrior>& cameraPriors, int flags, const Eigen::MatrixXd& targetCovariance)
@@ -42,10 +47,9 @@ Problem::Problem(const Rig& rig, const RigViews& views, const std::vector<Pose>&
     updateCameras();
 }
 
-Problem::Problem(const Rig& rig, const std::vector<PixelViews>& pixels, int pointCount, const std::vector<KnownLength>& lengths,
+Problem::Problem(const Rig& rig, const std::vector<SceneImage>& images, int pointCount, const std::vector<KnownLength>& lengths,
                  const std::vector<Pose>& poses, const std::vector<PosePrior>& posePriors, int flags,
-                 const std::vector<CameraPrior>& cameraPriors, const std::vector<CovarianceViews>& covariances, double variance,
-                 const Eigen::MatrixXd& rigCovariance, double lengthScaleSigma)
+                 const std::vector<CameraPrior>& cameraPriors, const Eigen::MatrixXd& rigCovariance, double lengthScaleSigma)
     : rig_(rig), imagesOfView_(poses.size()), isSeen_(poses.size(), false), scene_(pointCount, lengths), pixelSigma_(1)
 {
     Eigen::MatrixXd sharedErrors;           // lengths that are too small by a part are points that are too near by it
@@ -57,7 +61,8 @@ Problem::Problem(const Rig& rig, const std::vector<PixelViews>& pixels, int poin
     addBlocks(poses, posePriors, cameraPriors, flags, sharedErrors);
     if (rigCovariance.size() > 0)
         setRigPrior(rigCovariance);
-    addImages(viewsOfScene(pixels, pointCount, covariances, variance));
+    for (const SceneImage& image : images)
+        addImage(image.view, image.camera, true, image.points);
     updateCameras();
 }
 
@@ -232,20 +237,20 @@ void Problem::addImages(const RigViews& views)
             for (bool refracted : { false, true })
             {
                 const CameraViews& seen = views.cameras[c];
-                Image image;
-                image.view = view;
-                image.camera = c;
-                image.refracted = refracted;
                 const CovarianceViews& covariances = refracted ? seen.refractedCovariances : seen.directCovariances;
-                image.points = observed(views.object[view], (refracted ? seen.refracted : seen.direct)[view],
-                                        covariances.empty() ? PixelCovariances() : covariances[view], views.variance);
-                if (image.points.pixel.empty())
-                    continue;
-                image.rootWeights.assign(image.points.pixel.size(), 1.);
-                imagesOfView_[view].push_back((int)images_.size());
-                images_.push_back(image);
-                isSeen_[view] = true;
+                addImage(view, c, refracted, observed(views.object[view], (refracted ? seen.refracted : seen.direct)[view],
+                                                      covariances.empty() ? PixelCovariances() : covariances[view], views.variance));
             }
+}
+
+//! Nothing if it shows no point.
+void Problem::addImage(int view, int camera, bool refracted, const ImagePoints& points)
+{
+    if (points.pixel.empty())
+        return;
+    imagesOfView_[view].push_back((int)images_.size());
+    images_.push_back({ view, camera, refracted, points, std::vector<double>(points.pixel.size(), 1.) });
+    isSeen_[view] = true;
 }
 
 }} // namespace

@@ -4,32 +4,31 @@
 
 #include "adjust/reduced_cost.hpp"
 #include "adjust/inner.hpp"
+#include "math/dense.hpp"
 
 namespace cv { namespace refract {
 
 using Eigen::VectorXd;
 
-ReducedCost::ReducedCost(Problem& problem) : problem_(problem), isCurrent_(false), isAnchor_(false), squaredError_(0)
+ReducedCost::ReducedCost(Problem& problem)
+    : problem_(problem), cameras_(0), isPossible_(false), isCurrent_(false), isAnchor_(false), isLinear_(false), squaredError_(0)
 {
     const FreeSpace space(problem, false);
-    count_ = space.count;
     for (int block = 0; block < problem.outerCount(); block++)
         if (space.columnsOf(block) > 0)
-        {
             variable_.push_back(block);
-            mutable_parameter_block_sizes()->push_back((int)problem.blocks()[block].values.size());
-        }
-    set_num_residuals(count_ + 1);
+    for (int block : variable_)
+        cameras_ += problem.blocks()[block].kind != ParameterBlock::POSE;
 }
 
-//! False if it is there already.
-bool ReducedCost::moveTo(double const* const* parameters) const
+//! The problem to the state; false if it is there already.
+bool ReducedCost::move()
 {
     bool hasMoved = false;
     for (size_t i = 0; i < variable_.size(); i++)
     {
         Eigen::Map<VectorXd>& values = problem_.blocks()[variable_[i]].values;
-        const Eigen::Map<const VectorXd> wanted(parameters[i], values.size());
+        const Eigen::Map<const VectorXd> wanted(state_[i], values.size());
         hasMoved = hasMoved || values != wanted;
         values = wanted;
     }
@@ -37,9 +36,9 @@ bool ReducedCost::moveTo(double const* const* parameters) const
     return hasMoved;
 }
 
-void ReducedCost::predictInner() const
+void ReducedCost::predictInner()
 {
-    VectorXd change = VectorXd::Zero(count_);
+    VectorXd change = VectorXd::Zero(anchor_->space.count);
     for (size_t i = 0; i < variable_.size(); i++)
     {
         const int block = variable_[i], own = anchor_->space.columnsOf(block);
@@ -60,9 +59,9 @@ void ReducedCost::predictInner() const
     setInnerValues(problem_, inner);
 }
 
-bool ReducedCost::optimizeAt(double const* const* parameters) const
+bool ReducedCost::optimize()
 {
-    if (!moveTo(parameters) && isCurrent_)
+    if (!move() && isCurrent_)
         return true;
     isAnchor_ = false;
     if (anchor_)
@@ -76,15 +75,17 @@ bool ReducedCost::optimizeAt(double const* const* parameters) const
     return isCurrent_;
 }
 
-bool ReducedCost::linearizeAt(double const* const* parameters) const
+bool ReducedCost::linearize()
 {
-    if (!optimizeAt(parameters))
+    if (!optimize())
         return false;
     if (isAnchor_)
         return true;
     std::unique_ptr<Anchor> anchor(new Anchor{ {}, FreeSpace(problem_, false), innerValues(problem_),
                                                informationOf(problem_, false) });
-    if (!anchor->information.root.allFinite() || !anchor->information.residual.allFinite())
+    const Information& information = anchor->information;
+    if (!information.effect.allFinite() || !information.root.allFinite() || !information.residual.allFinite() ||
+        !information.poses.byCameras.allFinite() || !information.poses.residual.allFinite())
         return false;
     for (int block : variable_)
         anchor->values.push_back(problem_.blocks()[block].values);
@@ -93,27 +94,93 @@ bool ReducedCost::linearizeAt(double const* const* parameters) const
     return true;
 }
 
-bool ReducedCost::Evaluate(double const* const* parameters, double* residuals, double** jacobians) const
+void ReducedCost::PrepareForEvaluation(bool withJacobians, bool)
 {
-    if (jacobians ? !linearizeAt(parameters) : !optimizeAt(parameters))
+    isLinear_ = withJacobians;
+    isPossible_ = withJacobians ? linearize() : optimize();
+}
+
+//! Of a pose itself and those that are eliminated after it, and of the cameras; or of these alone.
+std::vector<int> ReducedCost::blocksOf(int group) const
+{
+    const BlockCholesky& poses = information().poses.factor;
+    std::vector<int> blocks;
+    for (int i = 0; i < cameras_; i++)
+        blocks.push_back(i);
+    if (group < poses.count())
+    {
+        blocks.push_back(cameras_ + poses.blockAt(group));
+        for (int place : poses.column(group).rows)
+            blocks.push_back(cameras_ + poses.blockAt(place));
+    }
+    if (blocks.empty())
+        blocks.push_back(0);        // Ceres has no residuals of nothing
+    return blocks;
+}
+
+//! The group's rows of the root.
+RowMajorMatrix ReducedCost::rootOf(int group, int variable) const
+{
+    const FreeSpace& space = anchor_->space;
+    const Information& root = information();
+    const int block = variable_[variable], first = space.first[block], size = space.columnsOf(block);
+    const bool isOfPose = group < root.poses.factor.count();
+    if (!isOfPose && variable < cameras_)
+        return root.root.middleCols(first, size);
+    if (!isOfPose)
+        return RowMajorMatrix::Zero(root.root.rows(), size);
+    const BlockCholesky& poses = root.poses.factor;
+    if (variable < cameras_)
+        return root.poses.byCameras.block(BlockCholesky::SIZE*poses.blockAt(group), first, BlockCholesky::SIZE, size);
+    const BlockCholesky::Column& column = poses.column(group);
+    const int place = poses.at(variable - cameras_);
+    if (place == group)
+        return column.diagonal.transpose();
+    return column.blocks[std::lower_bound(column.rows.begin(), column.rows.end(), place) - column.rows.begin()].transpose();
+}
+
+//! Those of the cameras' group have what no step takes away, too.
+VectorXd ReducedCost::residualsOf(int group) const
+{
+    const Information& all = information();
+    const BlockCholesky& poses = all.poses.factor;
+    const int SIZE = BlockCholesky::SIZE;
+    VectorXd residuals = VectorXd::Zero(group < poses.count() ? SIZE : all.residual.size() + 1);
+    if (group < poses.count())
+    {
+        if (isLinear_)
+            residuals = all.poses.residual.segment<SIZE>(SIZE*poses.blockAt(group));
+        return residuals;
+    }
+    if (isLinear_)
+        residuals.head(all.residual.size()) = all.residual;
+    const double explained = isLinear_ ? all.residual.squaredNorm() + all.poses.residual.squaredNorm() : 0;
+    residuals.tail<1>()[0] = std::sqrt(std::max(squaredError_ - explained, 0.));
+    return residuals;
+}
+
+ReducedCost::Group::Group(const ReducedCost& cost, int index) : cost_(cost), index_(index), blocks_(cost.blocksOf(index))
+{
+    for (int block : blocks_)
+        mutable_parameter_block_sizes()->push_back((int)cost.problem_.blocks()[cost.variable_[block]].values.size());
+    set_num_residuals((int)cost.residualsOf(index).size());
+}
+
+bool ReducedCost::Group::Evaluate(double const* const*, double* residuals, double** jacobians) const
+{
+    if (!cost_.isPossible_)
         return false;
-    Eigen::Map<VectorXd> r(residuals, count_ + 1);
-    r.setZero();
-    r[count_] = std::sqrt(squaredError_);
-    if (!jacobians)
-        return true;
-    const Information& information = anchor_->information;
-    r.head(count_) = information.residual;
-    r[count_] = std::sqrt(std::max(squaredError_ - information.residual.squaredNorm(), 0.));
-    for (size_t i = 0; i < variable_.size(); i++)
+    Eigen::Map<VectorXd>(residuals, num_residuals()) = cost_.residualsOf(index_);
+    for (size_t i = 0; i < blocks_.size() && jacobians; i++)
     {
         if (!jacobians[i])
             continue;
-        const int block = variable_[i];
-        const Eigen::MatrixXd& basis = anchor_->space.bases[block];
-        Eigen::Map<RowMajorMatrix> J(jacobians[i], count_ + 1, problem_.blocks()[block].values.size());
-        J.topRows(count_) = timesTranspose(information.root.middleCols(anchor_->space.first[block], basis.cols()), basis);
-        J.bottomRows<1>().setZero();
+        const RowMajorMatrix root = cost_.rootOf(index_, blocks_[i]);
+        const int size = parameter_block_sizes()[i];
+        Eigen::Map<RowMajorMatrix> J(jacobians[i], num_residuals(), size);
+        J.bottomRows(num_residuals() - root.rows()).setZero();
+        if (root.size() > 0)        // Eigen has no products of nothing
+            J.topRows(root.rows()) = timesTranspose(root, cost_.anchor_->space.bases[cost_.variable_[blocks_[i]]]);
     }
     return true;
 }

@@ -7,22 +7,43 @@
 
 #include "adjust/eliminate.hpp"
 #include <ceres/cost_function.h>
+#include <ceres/evaluation_callback.h>
 
 namespace cv { namespace refract {
 
 /** The problem as Ceres sees it: one cost by the outer blocks that are variable, the inner ones being at their best (variable
-projection). Its Jacobian is the root of the information, so that its steps are those of the whole problem.
+projection). Its Jacobian is the root of the information, so that its steps are those of the whole problem. In that of a scene each
+row has few poses: its residuals come in groups, one a pose, and one for the cameras.
 
-Where a step is tried the inner blocks begin from where the linearisation of the last accepted place has them. */
-class ReducedCost : public ceres::CostFunction
+Ceres tells it where to be asked (an evaluation callback): the values of a group's own blocks would not do. Where a step is tried the
+inner blocks begin from where the linearisation of the last accepted place has them. */
+class ReducedCost : public ceres::EvaluationCallback
 {
 public:
     explicit ReducedCost(Problem& problem);
     const std::vector<int>& variableBlocks() const { return variable_; }
+    /** Where Ceres has the values of the variable blocks, one after the other; before anything is asked. */
+    void setState(const std::vector<double*>& state) { state_ = state; }
 
-    bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
-    //! False where there is no cost, or a derivative overflows.
-    bool linearizeAt(double const* const* parameters) const;
+    //! One group of residuals; there are some once the cost was linearised.
+    class Group : public ceres::CostFunction
+    {
+    public:
+        Group(const ReducedCost& cost, int index);
+        //! Of variableBlocks(): on which the residuals depend.
+        const std::vector<int>& blocks() const { return blocks_; }
+        bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override;
+
+    private:
+        const ReducedCost& cost_;
+        const int index_;
+        const std::vector<int> blocks_;
+    };
+    int groupCount() const { return information().poses.factor.count() + 1; }
+
+    void PrepareForEvaluation(bool withJacobians, bool isNewPoint) override;
+    //! At the state. False where there is no cost, or a derivative overflows.
+    bool linearize();
     //! Where it was linearised last.
     const Information& information() const { return anchor_->information; }
 
@@ -35,17 +56,23 @@ private:
         Eigen::VectorXd inner;
         Information information;
     };
-    bool moveTo(double const* const* parameters) const;
-    void predictInner() const;
-    bool optimizeAt(double const* const* parameters) const;
+    bool move();
+    void predictInner();
+    bool optimize();
+    std::vector<int> blocksOf(int group) const;
+    RowMajorMatrix rootOf(int group, int variable) const;
+    Eigen::VectorXd residualsOf(int group) const;
 
     Problem& problem_;
-    int count_;
     std::vector<int> variable_;
-    mutable std::unique_ptr<Anchor> anchor_;
-    mutable bool isCurrent_;            //!< the inner blocks are the best at the problem's outer ones
-    mutable bool isAnchor_;             //!< and the anchor is there
-    mutable double squaredError_;
+    int cameras_;                       //!< of these the first ones; the others are poses
+    std::vector<double*> state_;
+    std::unique_ptr<Anchor> anchor_;
+    bool isPossible_;                   //!< there is a cost where it was asked for last
+    bool isCurrent_;                    //!< the inner blocks are the best at the problem's outer ones
+    bool isAnchor_;                     //!< and the anchor is there
+    bool isLinear_;                     //!< residuals are asked for with their derivatives
+    double squaredError_;
 };
 
 }} // namespace

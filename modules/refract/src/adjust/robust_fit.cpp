@@ -50,7 +50,7 @@ FitOutcome RobustFit::run()
 
 FitOutcome RobustFit::approach()
 {
-    const TermCriteria few(TermCriteria::COUNT, 20, 0);
+    const TermCriteria few(TermCriteria::COUNT + TermCriteria::EPS, 20, 1e-6);
     return isRobust_ ? reweightGradually() : minimize(problem_, few);
 }
 

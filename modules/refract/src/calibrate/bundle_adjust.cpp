@@ -2,7 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-/* Public functions of the bundle adjustment: arguments and results. */
+/* Public functions of the bundle adjustment: arguments and results; of pixels: bundle_images.cpp. */
 
 #include "calibrate/bundle_fit.hpp"
 #include "calibrate/calibrate_rig.hpp"
@@ -16,30 +16,6 @@ namespace cv { namespace refract {
 namespace {
 
 const double NaN = std::numeric_limits<double>::quiet_NaN();
-
-//! All images must have as many points, those of the scene.
-int checkedPointCount(const std::vector<PixelViews>& pixels, size_t given)
-{
-    int count = (int)given;
-    for (size_t c = 0; c < pixels.size(); c++)
-    {
-        if (pixels[c].size() != pixels[0].size() || pixels[c].empty())
-            CV_Error_(Error::StsUnmatchedSizes, ("imagePoints[%d] has %d views, imagePoints[0] has %d; they must agree, with "
-                                                 "at least one", (int)c, (int)pixels[c].size(), (int)pixels[0].size()));
-        for (size_t view = 0; view < pixels[c].size(); view++)
-        {
-            const int own = (int)pixels[c][view].size();
-            if (count == 0)
-                count = own;
-            if (own != 0 && own != count)
-                CV_Error_(Error::StsUnmatchedSizes, ("imagePoints[%d][%d] has %d points, but the scene has %d; NaN stands for "
-                                                     "those that are not seen", (int)c, (int)view, own, count));
-        }
-    }
-    if (count == 0)
-        CV_Error(Error::StsBadArg, "imagePoints has no point");
-    return count;
-}
 
 KnownLength checkedLength(const double* row, int i, int pointCount)
 {
@@ -72,12 +48,6 @@ std::vector<KnownLength> readLengths(InputArray lengths, int pointCount)
     return known;
 }
 
-bool isSeen(const BundleTask& task, int view)
-{
-    return std::any_of(task.pixels.begin(), task.pixels.end(), [=](const PixelViews& camera)
-                       { return countSeen(camera[view]) > 0; });
-}
-
 //! The scene's frame is that of the first view, in what is known of no pose.
 void holdFrame(int first, BundleTask& task)
 {
@@ -102,10 +72,11 @@ void readViewPoses(InputArrayOfArrays rvecs, InputArrayOfArrays tvecs, InputArra
         task.posePriors = readPosePriors(covariances, task.poses);
     else
         task.posePriors.resize(count);
+    const std::vector<bool> isSeen = task.images.seenViews();
     int first = -1;                     // of the views with an image
     for (int view = 0; view < count; view++)
     {
-        if (!isSeen(task, view))
+        if (!isSeen[view])
         {
             task.posePriors[view] = PosePrior();
             task.poses[view] = Pose();
@@ -177,13 +148,18 @@ void checkScale(const Rig& rig, BundleTask& task)
                            "poses of several views (GLASS_USE_POSES)", reason));
 }
 
-//! What is known beside the pixels: from earlier calibrations, of the ruler of the lengths, of the detector.
+//! What is known beside the pixels: of poses, from earlier calibrations, of the ruler of the lengths.
 struct Knowledge
 {
-    InputArrayOfArrays cameraCovariances;
-    std::vector<std::vector<Mat> > pixelCovariances;
+    InputArrayOfArrays poseCovariances, cameraCovariances;
     InputArray rigCovariance;
     double lengthScaleStd;
+};
+
+//! What is asked for that takes its time.
+struct Wanted
+{
+    bool poseCovariances, pointDeviations;
 };
 
 void writePoints(const std::vector<Point3d>& points, int depth, OutputArray out)
@@ -205,31 +181,14 @@ void writePoints(const std::vector<Point3d>& points, int depth, OutputArray out)
     }
 }
 
-//! Per camera, or nothing.
-void readCovariances(const std::vector<std::vector<Mat> >& covariances, BundleTask& task)
-{
-    checkCount(covariances.size(), (int)task.pixels.size(), "pixelCovariances", true);
-    MedianVariance median;
-    for (size_t c = 0; c < covariances.size(); c++)
-    {
-        task.covariances.push_back(readCovarianceViews(covariances[c], task.pixels[c], numbered("pixelCovariances", (int)c)));
-        for (size_t view = 0; view < task.pixels[c].size(); view++)
-            median.add(task.pixels[c][view], task.covariances[c].empty() ? PixelCovariances() : task.covariances[c][view]);
-    }
-    task.variance = median();
-}
-
-//! What both forms do; poses and deviations only where they are wanted.
-BundleFit adjust(const std::vector<PixelViews>& pixels, const std::vector<Ptr<RefractiveCamera> >& cameras,
+//! What all forms do.
+BundleFit adjust(const BundleImages& images, const std::vector<Point3d>& points, const std::vector<Ptr<RefractiveCamera> >& cameras,
                  const std::vector<int>& windowOfCamera, InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts,
                  InputArrayOfArrays rvecs, InputArrayOfArrays tvecs, InputOutputArray points3D, InputArray lengths, int flags,
-                 InputArrayOfArrays poseCovariances, TermCriteria criteria, const Knowledge& known, bool wantsPointDeviations)
+                 TermCriteria criteria, const Knowledge& known, const Wanted& wanted)
 {
     const int count = (int)cameras.size();
-    if (count == 0)
-        CV_Error(Error::StsBadArg, "cameras is empty; at least one is needed");
     checkCount(windowOfCamera.size(), count, "windowOfCamera", true);
-    checkCount(pixels.size(), count, "imagePoints", false);
     std::vector<String> names, ofImages;
     for (int c = 0; c < count; c++)
     {
@@ -237,16 +196,16 @@ BundleFit adjust(const std::vector<PixelViews>& pixels, const std::vector<Ptr<Re
         ofImages.push_back(numbered("imagePoints", c));
     }
     BundleTask task;
-    task.pixels = pixels;
+    task.images = images;
     task.flags = flags;
     task.criteria = criteria;
-    task.wantsPointDeviations = wantsPointDeviations;
-    task.points = readPoints3(points3D, "points3D");
+    task.wantsPoseCovariances = wanted.poseCovariances;
+    task.wantsPointDeviations = wanted.pointDeviations;
+    task.points = points;
     const int depth = task.points.empty() ? CV_64F : points3D.depth();
-    task.points.resize(checkedPointCount(pixels, task.points.size()), Point3d(NaN, NaN, NaN));
-    task.lengths = readLengths(lengths, (int)task.points.size());
-    readViewPoses(rvecs, tvecs, poseCovariances, (int)pixels[0].size(), task);
-    readCovariances(known.pixelCovariances, task);
+    task.points.resize(images.points, Point3d(NaN, NaN, NaN));
+    task.lengths = readLengths(lengths, images.points);
+    readViewPoses(rvecs, tvecs, known.poseCovariances, images.views, task);
 
     Rig rig;
     rig.cameras = camerasOf(cameras, names);
@@ -262,11 +221,7 @@ BundleFit adjust(const std::vector<PixelViews>& pixels, const std::vector<Ptr<Re
     task.lengthScaleSigma = task.lengths.empty() ? 0 : known.lengthScaleStd;
     task.cameraPriors = readCameraPriors(known.cameraCovariances, rig.cameras);
     checkScale(rig, task);
-    RigViews views;
-    views.object.resize(pixels[0].size());
-    for (const PixelViews& ofCamera : pixels)
-        views.cameras.push_back({ PixelViews(), ofCamera });
-    checkWindows(rig, views, flags, ofImages);
+    checkWindows(rig, images.seeingCameras(), flags, ofImages);
 
     BundleFit fit;
     throwUnlessConverged(fitBundle(rig, task, fit), FitKind::BUNDLE);
@@ -275,6 +230,19 @@ BundleFit adjust(const std::vector<PixelViews>& pixels, const std::vector<Ptr<Re
         writeExtrinsicPoses(rig, Rs, Ts);
     writePoints(fit.points, depth, points3D);
     return fit;
+}
+
+//! One array a view.
+void writeCovariances(const std::vector<Mat>& covariances, OutputArrayOfArrays out)
+{
+    if (!out.needed())
+        return;
+    out.create((int)covariances.size(), 1, CV_64F);
+    for (int i = 0; i < (int)covariances.size(); i++)
+    {
+        out.create(covariances[i].size(), CV_64F, i, true);
+        covariances[i].copyTo(out.getMat(i));
+    }
 }
 
 const int BUNDLE_FLAGS = MONO_FLAGS | GLASS_FREE_EXTRINSICS | GLASS_FIX_NORMAL;
@@ -297,13 +265,39 @@ double refractiveBundleAdjust(const std::vector<std::vector<Mat> >& imagePoints,
     std::vector<PixelViews> pixels;
     for (size_t c = 0; c < imagePoints.size(); c++)
         pixels.push_back(readPixelViews(imagePoints[c], numbered("imagePoints", (int)c).c_str(), HalfPixels::TAKEN));
-    const BundleFit fit = adjust(pixels, cameras, windowOfCamera, Rs, Ts, rvecs, tvecs, points3D, lengths, flags,
-                                 poseCovariances, criteria,
-                                 { cameraCovariances, pixelCovariances, rigCovariance, lengthScaleStd },
-                                 pointDeviations.needed());
+    const std::vector<Point3d> points = readPoints3(points3D, "points3D");
+    const BundleImages images = denseImages(pixels, (int)cameras.size(), (int)points.size(), pixelCovariances);
+    const BundleFit fit = adjust(images, points, cameras, windowOfCamera, Rs, Ts, rvecs, tvecs, points3D, lengths, flags, criteria,
+                                 { poseCovariances, cameraCovariances, rigCovariance, lengthScaleStd },
+                                 { false, pointDeviations.needed() });
     writeFit(fit, rvecs, tvecs, stdDeviations, covariance, perViewErrors);
     writeMat(fit.pointDeviations, pointDeviations);
-    writeMasks(fit.inliers, inliers);
+    writeMasks(denseMasks(images, fit.isUsed), inliers);
+    return fit.rms;
+}
+
+double refractiveBundleAdjust(InputArray observations, InputArray imagePoints, const std::vector<Ptr<RefractiveCamera> >& cameras,
+                              const std::vector<int>& windowOfCamera, InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts,
+                              InputOutputArrayOfArrays rvecs, InputOutputArrayOfArrays tvecs, InputOutputArray points3D,
+                              InputArray lengths, OutputArray stdDeviations, OutputArray covariance,
+                              OutputArrayOfArrays viewCovariances, OutputArray pointDeviations, OutputArray perViewErrors,
+                              OutputArray inliers, int flags, InputArrayOfArrays poseCovariances, TermCriteria criteria,
+                              InputArrayOfArrays cameraCovariances, InputArray pixelCovariances, InputArray rigCovariance,
+                              double lengthScaleStd)
+{
+    CV_INSTRUMENT_REGION();
+
+    checkFlags(flags, BUNDLE_FLAGS | GLASS_USE_POSES);
+    const std::vector<Point3d> points = readPoints3(points3D, "points3D");
+    const BundleImages images = listedImages(observations, imagePoints, (int)cameras.size(), countVectors(rvecs, "rvecs"),
+                                             (int)points.size(), pixelCovariances);
+    const BundleFit fit = adjust(images, points, cameras, windowOfCamera, Rs, Ts, rvecs, tvecs, points3D, lengths, flags, criteria,
+                                 { poseCovariances, cameraCovariances, rigCovariance, lengthScaleStd },
+                                 { viewCovariances.needed(), pointDeviations.needed() });
+    writeFit(fit, rvecs, tvecs, stdDeviations, covariance, perViewErrors);
+    writeCovariances(fit.poseCovariances, viewCovariances);
+    writeMat(fit.pointDeviations, pointDeviations);
+    writeMat(listedMask(images, fit.isUsed), inliers);
     return fit.rms;
 }
 
@@ -317,8 +311,10 @@ double refractiveBundleAdjust(InputArrayOfArrays imagePoints, const std::vector<
     std::vector<PixelViews> pixels;
     for (const std::vector<Point2d>& ofCamera : readPixelViews(imagePoints, "imagePoints", HalfPixels::TAKEN))
         pixels.push_back(PixelViews(1, ofCamera));
-    return adjust(pixels, cameras, windowOfCamera, Rs, Ts, noArray(), noArray(), points3D, lengths, flags, noArray(), criteria,
-                  { noArray(), {}, noArray(), 0. }, false).rms;
+    const std::vector<Point3d> points = readPoints3(points3D, "points3D");
+    const BundleImages images = denseImages(pixels, (int)cameras.size(), (int)points.size(), {});
+    return adjust(images, points, cameras, windowOfCamera, Rs, Ts, noArray(), noArray(), points3D, lengths, flags, criteria,
+                  { noArray(), noArray(), noArray(), 0. }, { false, false }).rms;
 }
 
 }} // namespace

@@ -67,10 +67,14 @@ void describe(const Problem& problem, BundleFit& fit)
     for (Point3d& point : fit.points)
         point *= problem.sceneScale();
     fit.perViewErrors = Mat(problem.viewCount(), cameras, CV_64F, Scalar(std::numeric_limits<double>::quiet_NaN()));
-    fit.inliers.assign(problem.viewCount()*cameras, Mat());
     double sum = 0;
     for (const Image& image : problem.images())
-        sum += describeImage(problem, image, image.camera, (int)fit.points.size(), fit);
+    {
+        sum += describeError(problem, image, image.camera, fit);
+        fit.isUsed.push_back(std::vector<uchar>());
+        for (double weight : image.rootWeights)
+            fit.isUsed.back().push_back(weight > 0);
+    }
     fit.rms = std::sqrt(sum/problem.pointCount());
     fit.poses = problem.poses();
 }
@@ -79,8 +83,8 @@ void describe(const Problem& problem, BundleFit& fit)
 
 FitOutcome fitBundle(Rig& rig, const BundleTask& task, BundleFit& fit)
 {
-    Problem problem(rig, task.pixels, (int)task.points.size(), task.lengths, task.poses, task.posePriors, task.flags,
-                    task.cameraPriors, task.covariances, task.variance, task.rigCovariance, task.lengthScaleSigma);
+    Problem problem(rig, task.images.images, task.images.points, task.lengths, task.poses, task.posePriors, task.flags,
+                    task.cameraPriors, task.rigCovariance, task.lengthScaleSigma);
     const FitOutcome outcome = adjust(problem, task);
     if (!outcome.isUsable())
         return outcome;
@@ -93,6 +97,8 @@ FitOutcome fitBundle(Rig& rig, const BundleTask& task, BundleFit& fit)
         covariance.widen(problem);
     const int count = problem.publicCount() - (problem.targetBlock() < 0 ? 0 : SharedTargetErrors::COUNT);
     eigen2cv(Eigen::MatrixXd(covariance.ofParameters.topLeftCorner(count, count)), fit.covariance);
+    if (task.wantsPoseCovariances)
+        fit.poseCovariances = covariance.ofPoses();
     if (task.wantsPointDeviations)
         fit.pointDeviations = covariance.ofPoints();
     describe(problem, fit);

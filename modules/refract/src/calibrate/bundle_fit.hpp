@@ -6,6 +6,7 @@
 #define OPENCV_REFRACT_BUNDLE_FIT_HPP
 
 #include "adjust/outliers.hpp"
+#include "calibrate/bundle_images.hpp"
 #include "calibrate/rig_fit.hpp"
 
 namespace cv { namespace refract {
@@ -13,25 +14,25 @@ namespace cv { namespace refract {
 //! What a bundle adjustment is given beside the cameras.
 struct BundleTask
 {
-    std::vector<PixelViews> pixels;             //!< per camera, per view
+    BundleImages images;
     std::vector<Point3d> points;                //!< NaN: not known
     std::vector<Pose> poses;                    //!< scene -> camera 1 of each view
     std::vector<PosePrior> posePriors;      //!< of the same
     std::vector<CameraPrior> cameraPriors;      //!< one per camera, or empty
-    std::vector<CovarianceViews> covariances;   //!< of the pixels, per camera, or empty
-    double variance = 1;                        //!< in units of which they are: RigViews'
     std::vector<KnownLength> lengths;
     Eigen::MatrixXd rigCovariance;              //!< of the public parameters, from an earlier calibration; empty: nothing is known
     double lengthScaleSigma = 0;                //!< of a relative error that all lengths share; 0: there is none; NaN: not known
     int flags;
     TermCriteria criteria;
     ScaleSources scale;
-    bool wantsPointDeviations;
+    bool wantsPoseCovariances = false, wantsPointDeviations = false;
 };
 
-//! What it finds beside the cameras; a column of perViewErrors is a camera.
+//! What it finds beside the cameras; a column of perViewErrors is a camera. In place of inliers: isUsed.
 struct BundleFit : RigFit
 {
+    Masks isUsed;                               //!< per image of the task, per point of it
+    std::vector<Mat> poseCovariances;           //!< if wanted
     std::vector<Point3d> points;                //!< NaN: left out
     Mat pointDeviations;                        //!< if wanted
 };

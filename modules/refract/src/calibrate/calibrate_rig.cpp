@@ -77,7 +77,7 @@ void addParameters(std::vector<Camera>& cameras, int flags)
     }
 }
 
-void checkWindows(const Rig& rig, const RigViews& views, int flags, const std::vector<String>& names)
+void checkWindows(const Rig& rig, const std::vector<bool>& isSeen, int flags, const std::vector<String>& names)
 {
     const auto refracts = [](const Camera& camera) { return camera.refracts(); };
     const bool anyRefracts = std::any_of(rig.cameras.begin(), rig.cameras.end(), refracts);
@@ -92,16 +92,24 @@ void checkWindows(const Rig& rig, const RigViews& views, int flags, const std::v
         if (isShared && window.shape == WINDOW_BENT && !window.wedge.empty())
             CV_Error(Error::StsNotImplemented, "a window that several cameras share is bent and has a wedge: its faces have no common "
                                                "centre. Leave one of both out (window.wedge empty, or window.shape WINDOW_FLAT)");
-        bool isSeen = false;
+        bool isWindowSeen = false;
         for (int c = owner; c < rig.count(); c++)
-            isSeen = isSeen || (rig.owner[c] == owner && seesAnything(views.cameras[c].refracted));
-        if (isSeen)
+            isWindowSeen = isWindowSeen || (rig.owner[c] == owner && isSeen[c]);
+        if (isWindowSeen)
             continue;
         CalibrationError error(CalibrationError::WINDOW_NOT_SEEN, names[owner] + " has no point that was seen",
                                "no point was seen through the window");
         error.camera = owner;
         raise(error);
     }
+}
+
+void checkWindows(const Rig& rig, const RigViews& views, int flags, const std::vector<String>& names)
+{
+    std::vector<bool> isSeen;
+    for (const CameraViews& camera : views.cameras)
+        isSeen.push_back(seesAnything(camera.refracted));
+    checkWindows(rig, isSeen, flags, names);
 }
 
 //! As the arrays have them: an empty list is no view.
@@ -209,6 +217,13 @@ void writeExtrinsicPoses(const Rig& rig, InputOutputArrayOfArrays Rs, InputOutpu
 }
 
 //! Vectors as calib3d keeps them: one array a view, or one array of 3-vectors. They may be NaN.
+int countVectors(InputArrayOfArrays a, const char* name)
+{
+    if (a.empty())
+        return 0;
+    return a.isMatVector() || a.kind() == _InputArray::STD_VECTOR_VECTOR ? (int)a.total() : (int)readPoints3(a, name).size();
+}
+
 static std::vector<Vec3d> readVectors(InputArrayOfArrays a, int count, const char* name)
 {
     std::vector<Vec3d> vectors;

@@ -26,8 +26,10 @@ void checkFlags(int flags, int allowed);
 void addParameters(std::vector<Camera>& cameras, int flags);
 
 /** Refuses windows and flags of which no data can tell, and windows that nobody looked through.
+@param isSeen of each camera: it sees a point
 @param names of each camera's refracted views */
 void checkWindows(const Rig& rig, const RigViews& views, int flags, const std::vector<String>& names);
+void checkWindows(const Rig& rig, const std::vector<bool>& isSeen, int flags, const std::vector<String>& names);
 
 //! One entry per camera; fewer only if it may be left out altogether.
 void checkCount(size_t count, int expected, const char* name, bool mayBeEmpty);
@@ -50,6 +52,8 @@ void setOwners(Rig& rig, const std::vector<int>& windowOfCamera);
 
 std::vector<Pose> readExtrinsicPoses(InputArrayOfArrays Rs, InputArrayOfArrays Ts, int cameras);
 void writeExtrinsicPoses(const Rig& rig, InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts);
+//! Of vectors in one of the forms that poses may have.
+int countVectors(InputArrayOfArrays a, const char* name);
 //! What is not finite is not found.
 std::vector<Pose> readPoses(InputArrayOfArrays rvecs, InputArrayOfArrays tvecs, int count);
 //! Adds that three coordinates are exact, from the first on. distance: the translation's length.

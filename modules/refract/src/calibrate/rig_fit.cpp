@@ -30,6 +30,14 @@ TermCriteria checkedCriteria(TermCriteria criteria)
     return criteria;
 }
 
+double describeError(const Problem& problem, const Image& image, int column, RigFit& fit)
+{
+    const double squares = problem.squaredDistances(image);
+    const int used = image.usedCount();
+    fit.perViewErrors.at<double>(image.view, column) = used > 0 ? std::sqrt(squares/used) : NaN;
+    return squares;
+}
+
 namespace {
 
 FitOutcome checkFreedom(const Problem& problem)
@@ -38,6 +46,17 @@ FitOutcome checkFreedom(const Problem& problem)
     outcome.count = problem.equationCount();
     outcome.expected = problem.unknownCount() + 1;
     return outcome;
+}
+
+//! Its error, and which points of the target it has.
+double describeImage(const Problem& problem, const Image& image, int column, int pointCount, RigFit& fit)
+{
+    const double squares = describeError(problem, image, column, fit);
+    Mat mask(pointCount, 1, CV_8U, Scalar(0));
+    for (size_t k = 0; k < image.points.index.size(); k++)
+        mask.at<uchar>(image.points.index[k]) = image.rootWeights[k] > 0;
+    fit.inliers[image.view*fit.perViewErrors.cols + column] = mask;
+    return squares;
 }
 
 void describeImages(const Problem& problem, const RigTask& task, const std::vector<uchar>& status, RigFit& fit)
@@ -164,18 +183,6 @@ FitOutcome findStart(const Rig& rig, RigTask& task, RigStart& start, std::vector
     if (outcome.converged() && searchesLens && !isIncremental)
         start = bestSealedStart(start, views, flags, minima);
     return outcome;
-}
-
-double describeImage(const Problem& problem, const Image& image, int column, int pointCount, RigFit& fit)
-{
-    const double squares = problem.squaredDistances(image);
-    const int used = image.usedCount();
-    fit.perViewErrors.at<double>(image.view, column) = used > 0 ? std::sqrt(squares/used) : NaN;
-    Mat mask(pointCount, 1, CV_8U, Scalar(0));
-    for (size_t k = 0; k < image.points.index.size(); k++)
-        mask.at<uchar>(image.points.index[k]) = image.rootWeights[k] > 0;
-    fit.inliers[image.view*fit.perViewErrors.cols + column] = mask;
-    return squares;
 }
 
 void toNearestCenters(Rig& rig, RigFit& fit)

@@ -36,8 +36,8 @@ FitOutcome findStart(const Rig& rig, RigTask& task, RigStart& start, std::vector
 //! Starts, fit, and what it tells. rig is start and result; it and fit mean nothing unless the outcome is CONVERGED.
 FitOutcome fitRig(Rig& rig, const RigTask& task, RigFit& fit);
 
-//! What a calibration and a bundle adjustment tell of one image: its RMS, and which points are inliers. Returns its squares.
-double describeImage(const Problem& problem, const Image& image, int column, int pointCount, RigFit& fit);
+//! What a calibration and a bundle adjustment tell of one image alike: its RMS. Returns its squares.
+double describeError(const Problem& problem, const Image& image, int column, RigFit& fit);
 
 /** While a tube is estimated, its center is any point of its axis. What is returned is the one nearest to the camera: with
 c' = c - (a.c) a of center c and axis a, so do the center's rows of the covariance, and the axis' columns of the jacobian (if there is

@@ -92,6 +92,15 @@ double refractiveBundleAdjust(const std::vector<std::vector<Mat> >&, const std::
     throwWithoutCeres("refractiveBundleAdjust");
 }
 
+double refractiveBundleAdjust(InputArray, InputArray, const std::vector<Ptr<RefractiveCamera> >&, const std::vector<int>&,
+                              InputOutputArrayOfArrays, InputOutputArrayOfArrays, InputOutputArrayOfArrays,
+                              InputOutputArrayOfArrays, InputOutputArray, InputArray, OutputArray, OutputArray,
+                              OutputArrayOfArrays, OutputArray, OutputArray, OutputArray, int, InputArrayOfArrays, TermCriteria,
+                              InputArrayOfArrays, InputArray, InputArray, double)
+{
+    throwWithoutCeres("refractiveBundleAdjust");
+}
+
 double refractiveBundleAdjust(InputArrayOfArrays, const std::vector<Ptr<RefractiveCamera> >&, const std::vector<int>&,
                               InputOutputArrayOfArrays, InputOutputArrayOfArrays, InputOutputArray, InputArray, int,
                               TermCriteria)

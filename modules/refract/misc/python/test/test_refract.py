@@ -433,6 +433,13 @@ class refract_test(NewOpenCVTests):
             [self.zero.copy()], points + 0.5, lengths, rigCovariance=np.zeros((count, count)), lengthScaleStd=1e-3)
         self.assertClose(points, known[5], 1e-3)
         self.assertGreater(np.nanmin(known[8][:, 2]/points[:, 2]), 1e-4)
+        observations = np.array([(0, camera, point) for camera in range(2) for point in range(30)], np.int32)
+        listed = cv.refract.refractiveBundleAdjustSparse(
+            observations, np.concatenate([p.reshape(-1, 2) for p in pixels]), cameras, [0, 1], [np.eye(3), R.copy()],
+            [np.zeros(3), T.copy()], [self.zero.copy()], [self.zero.copy()], points + 0.5, lengths)
+        self.assertLess(listed[0], 1e-5)
+        self.assertClose(points, listed[5], 1e-3)
+        self.assertEqual((60, 1), listed[-1].shape)
 
     def test_pnp_generic_extended(self):
         pose = np.array([0.1, -0.2, 0.3]), np.array([10., -5, 620])

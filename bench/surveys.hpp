@@ -1,0 +1,16 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#ifndef REFRACT_BENCH_SURVEYS_HPP
+#define REFRACT_BENCH_SURVEYS_HPP
+
+namespace bench {
+
+/** Table of strips of images of a sea floor through a flat port, adjusted from lists of observations: time, memory, how the time grows
+with the views, errors of poses and points against the truth in their stated standard deviations.
+@param most views of the longest strip */
+void printSurveys(int most);
+
+} // namespace bench
+
+#endif // REFRACT_BENCH_SURVEYS_HPP

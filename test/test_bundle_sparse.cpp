@@ -1,0 +1,380 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+// Bundles of a list of observations, and the sparse system behind them.
+#include "adjust/block_cholesky.hpp"
+#include "adjust/linearize.hpp"
+#include "adjust/ray_midpoints.hpp"
+#include "bundle_scenes.hpp"
+#include "math/dense.hpp"
+#include "problem_scenes.hpp"
+#include <opencv2/core/eigen.hpp>
+
+using namespace cv;
+using namespace cv::refract;
+using namespace scenes;
+using Eigen::MatrixXd;
+
+namespace {
+
+//! A call with the list of what another has in arrays.
+struct ListCall
+{
+    explicit ListCall(const BundleCall& dense) : call(dense)
+    {
+        for (Ptr<RefractiveCamera>& camera : call.cameras)
+            camera = camera->clone();
+        for (std::vector<Mat>* results : { &call.Rs, &call.Ts, &call.rvecs, &call.tvecs })
+            for (Mat& result : *results)
+                result = result.clone();
+        for (int c = 0; c < (int)dense.images.size(); c++)
+            for (int view = 0; view < (int)dense.images[c].size(); view++)
+                for (int i = 0; i < dense.images[c][view].rows; i++)
+                {
+                    observations.push_back(Vec3i(view, c, i));
+                    pixels.push_back(dense.images[c][view].at<Point2d>(i));
+                }
+        call.points.assign(dense.images[0][0].rows, Point3d(NaN, NaN, NaN));
+    }
+    void shuffle(Random& random)
+    {
+        for (size_t i = observations.size() - 1; i > 0; i--)
+        {
+            const size_t other = (size_t)(random.uniform(0, 1)*(double)i);
+            std::swap(observations[i], observations[other]);
+            std::swap(pixels[i], pixels[other]);
+        }
+    }
+    double run(int flags)
+    {
+        return refractiveBundleAdjust(observations, pixels, call.cameras, call.windows, call.Rs, call.Ts, call.rvecs, call.tvecs,
+                                      call.points, call.lengths, call.deviations, call.covariance, viewCovariances,
+                                      call.pointDeviations, call.perViewErrors, inliers, flags, call.poseCovariances,
+                                      TermCriteria(3, 1000, 1e-12), noArray(), pixelCovariances);
+    }
+
+    BundleCall call;
+    std::vector<Vec3i> observations;
+    std::vector<Point2d> pixels;
+    Mat pixelCovariances;
+    std::vector<Mat> viewCovariances;
+    std::vector<uchar> inliers;
+};
+
+RigTruth movingPair()
+{
+    return makeRig(2, { 0, 1 }, 1.333);
+}
+
+//! A camera along a strip, in whose images few points are in common with those of far ones.
+BundleScene makeStrip(const RigTruth& rig, int views, Random& random, double sigma)
+{
+    const double STEP = 40, RANGE = 600, LENGTH = STEP*views + 120;
+    const int count = 14*views;
+    BundleScene scene;
+    for (int i = 0; i < count; i++)
+        scene.points.push_back({ LENGTH*(i + random.uniform(0, 1))/count - 80, random.uniform(-65, 65), random.uniform(-30, 30) });
+    for (int view = 0; view < views; view++)
+    {
+        const Vec3d rvec = view == 0 ? Vec3d() : random.vector(0.04);
+        Matx33d R;
+        Rodrigues(rvec, R);
+        scene.rvecs.push_back(rvec);
+        scene.tvecs.push_back(-(R*(Vec3d(STEP*view, 0, -RANGE) + random.vector(10))));
+    }
+    for (int i = 0; i + 1 < (int)scene.points.size(); i += 10)
+        scene.lengths.push_back({ (double)i, i + 1., norm(scene.points[i] - scene.points[i + 1]), 0.1 });
+    look(rig, random, sigma, 0.05, scene);
+    return scene;
+}
+
+} // namespace
+
+TEST_CASE("A list of observations gives what the arrays give, in any order", "[bundle][sparse]")
+{
+    CAPTURE(seed());
+    for (int flags : { 0, (int)GLASS_ROBUST })
+    {
+        CAPTURE(flags);
+        Random random(41);
+        const RigTruth truth = movingPair();
+        BundleScene scene = makeMovingScene(truth, 6, 30, random, 0.1, 0.2);
+        scene.pixels[0][1][3].x = NaN;          // halves
+        scene.pixels[1][2][5].y = NaN;
+        if (flags)
+            scene.pixels[0][2][7] += Point2d(12, -9);
+        BundleCall dense(truth, scene, random);
+        ListCall list(dense);
+        list.shuffle(random);
+        const double rms = dense.run(flags | GLASS_FREE_DISTANCE);
+        CHECK(list.run(flags | GLASS_FREE_DISTANCE) == rms);
+        CHECK(largestDifference(Mat(list.call.points), Mat(dense.points)) == 0);
+        CHECK(largestDifference(list.call.covariance, dense.covariance) == 0);
+        CHECK(largestDifference(list.call.deviations, dense.deviations) == 0);
+        CHECK(largestDifference(list.call.pointDeviations, dense.pointDeviations) == 0);
+        CHECK(largestDifference(list.call.perViewErrors, dense.perViewErrors) == 0);
+        int rejected = 0;
+        for (size_t i = 0; i < list.observations.size(); i++)
+        {
+            const Vec3i& o = list.observations[i];
+            CHECK(list.inliers[i] == dense.inliers[o[0]*2 + o[1]].at<uchar>(o[2]));
+            rejected += isSeen(list.pixels[i]) && !list.inliers[i];
+        }
+        CHECK((rejected > 0) == (flags != 0));
+        for (size_t view = 0; view < dense.rvecs.size(); view++)
+        {
+            CHECK(largestDifference(list.call.rvecs[view], dense.rvecs[view]) == 0);
+            CHECK(largestDifference(list.call.tvecs[view], dense.tvecs[view]) == 0);
+        }
+        // Again from the result: it stays.
+        const std::vector<Point3d> before = list.call.points;
+        CHECK(list.run(flags | GLASS_FREE_DISTANCE) == Approx(rms).epsilon(1e-6));
+        CHECK(largestDifference(Mat(list.call.points), Mat(before)) < 1e-3);
+    }
+}
+
+TEST_CASE("Two rows of one point in one image are two observations", "[bundle][sparse]")
+{
+    CAPTURE(seed());
+    Random random(42);
+    const RigTruth truth = movingPair();
+    const BundleScene scene = makeMovingScene(truth, 5, 25, random, 0.1);
+    const BundleCall start(truth, scene, random);
+    ListCall single(start), twice(start), certain(start);
+    single.run(GLASS_FREE_EXTRINSICS);
+    const size_t count = twice.pixels.size();
+    for (size_t i = 0; i < count; i += 2)
+    {
+        twice.observations.push_back(twice.observations[i]);
+        twice.pixels.push_back(twice.pixels[i]);
+    }
+    twice.run(GLASS_FREE_EXTRINSICS);
+    CHECK(twice.inliers.size() == twice.pixels.size());
+    // As one of half the variance.
+    Mat_<double> covariances((int)count, 3, 0.);
+    for (int i = 0; i < (int)count; i++)
+        covariances(i, 0) = covariances(i, 2) = i % 2 == 0 ? 0.5 : 1;
+    certain.pixelCovariances = covariances;
+    certain.run(GLASS_FREE_EXTRINSICS);
+    CHECK(largestDifference(Mat(twice.call.points), Mat(certain.call.points)) < 2e-3);
+    CHECK(largestDifference(Mat(twice.call.points), Mat(single.call.points)) > 5e-3);
+}
+
+TEST_CASE("A view that nothing is seen in has no pose", "[bundle][sparse]")
+{
+    Random random(43);
+    const RigTruth truth = movingPair();
+    const BundleScene scene = makeMovingScene(truth, 5, 25, random, 0.1);
+    ListCall list(BundleCall(truth, scene, random));
+    for (size_t i = list.observations.size(); i-- > 0;)
+        if (list.observations[i][0] == 2)
+        {
+            list.observations.erase(list.observations.begin() + i);
+            list.pixels.erase(list.pixels.begin() + i);
+        }
+    list.call.rvecs[2] = Mat(Vec3d(NaN, NaN, NaN), true);
+    list.run(0);
+    REQUIRE(list.viewCovariances.size() == 5);
+    CHECK(std::isnan(list.call.rvecs[2].at<double>(0)));
+    CHECK(std::isnan(list.call.tvecs[2].at<double>(2)));
+    CHECK(std::isnan(list.call.perViewErrors.at<double>(2, 1)));
+    CHECK(std::isnan(list.viewCovariances[2].at<double>(0, 0)));
+    CHECK(countNonZero(list.viewCovariances[0]) == 0);      // the frame
+    CHECK(list.viewCovariances[1].at<double>(5, 5) > 0);
+}
+
+TEST_CASE("What is wrong with a list is said", "[bundle][sparse]")
+{
+    Random random(44);
+    const RigTruth truth = movingPair();
+    const BundleScene scene = makeMovingScene(truth, 4, 20, random, 0.1);
+    const BundleCall start(truth, scene, random);
+    const auto fault = [&](const std::function<void(ListCall&)>& spoil)
+    {
+        ListCall list(start);
+        spoil(list);
+        return thrown([&] { list.run(0); });
+    };
+    using Catch::Contains;
+    CHECK_THAT(fault([](ListCall& l) { l.observations[7][0] = 4; }), Contains("observations[7] is of view 4, but rvecs has 4"));
+    CHECK_THAT(fault([](ListCall& l) { l.observations[7][1] = 2; }), Contains("observations[7] is of camera 2, but cameras has 2"));
+    CHECK_THAT(fault([](ListCall& l) { l.observations[7][2] = -1; }), Contains("observations[7] is of point -1, but points3D has 20"));
+    CHECK_THAT(fault([](ListCall& l) { l.call.points.clear(); l.observations[3][2] = -1; }), Contains("point -1; it must be a whole"));
+    CHECK_THAT(fault([](ListCall& l) { l.pixels.pop_back(); }), Contains("imagePoints has 159 pixels, but observations has 160 rows"));
+    CHECK_THAT(fault([](ListCall& l) { l.observations.clear(); }), Contains("observations is empty"));
+    CHECK_THAT(fault([](ListCall& l) { l.call.cameras.clear(); }), Contains("cameras is empty"));
+    CHECK_THAT(fault([](ListCall& l) { l.pixelCovariances = Mat::ones(3, 3, CV_64F); }), Contains("pixelCovariances"));
+    CHECK_THAT(fault([](ListCall& l) { for (Point2d& p : l.pixels) p = Point2d(NaN, NaN); }), Contains("has no point that was seen"));
+    // A view of two points has no pose, and is named.
+    CHECK_THAT(fault([](ListCall& l)
+               {
+                   for (size_t i = 0; i < l.observations.size(); i++)
+                       if (l.observations[i][0] == 3 && (l.observations[i][2] > 1 || l.observations[i][1] > 0))
+                           l.pixels[i] = Point2d(NaN, NaN);
+               }), Contains("view 3") || Contains("view 4"));
+    ListCall numbers(start);        // whole numbers of floating point, as of NumPy
+    Mat rows;
+    Mat(numbers.observations).convertTo(rows, CV_64F);
+    Mat deviations, covariance, ofPoints, errors, inliers;
+    const auto run = [&] { return refractiveBundleAdjust(rows, numbers.pixels, numbers.call.cameras, numbers.call.windows, numbers.call.Rs,
+        numbers.call.Ts, numbers.call.rvecs, numbers.call.tvecs, numbers.call.points, numbers.call.lengths, deviations, covariance,
+        noArray(), ofPoints, errors, inliers); };
+    CHECK(run() > 0);
+    rows.at<Vec3d>(2)[2] = 1.5;
+    CHECK_THAT(thrown(run), Contains("observations[2] is of point 1.5"));
+}
+
+TEST_CASE("Poses and points of a strip are as uncertain as the whole inverse says", "[bundle][sparse]")
+{
+    CAPTURE(seed());
+    Random random(45);
+    const double sigma = 0.1;
+    const RigTruth truth = makeRig(1, { 0 }, 1.333);
+    const BundleScene scene = makeStrip(truth, 9, random, 0);
+    const std::unique_ptr<Problem> bundle = bundleAt(truth, scene, sigma, GLASS_FREE_INTRINSICS);
+    bundle->setPoints(startPoints(*bundle, scene.points), {});
+    Covariance covariance;
+    REQUIRE(covariance.compute(*bundle, sigma*sigma, 0).converged());
+
+    const FreeSpace space(*bundle);
+    CHECK(informationOf(*bundle).poses.factor.column(0).rows.size() < 6);        // sparse
+    const int outer = space.count, count = outer + bundle->scene().coordinateCount();
+    MatrixXd information = MatrixXd::Zero(count, count);
+    std::vector<int> firstOfPoint(scene.points.size(), -1);
+    int next = outer;
+    for (const Cluster& cluster : bundle->scene().clusters())
+        for (int point : cluster.points)
+        {
+            firstOfPoint[point] = next;
+            next += 3;
+        }
+    const std::vector<ImageRows> images = linearize(*bundle, space);
+    for (size_t i = 0; i < images.size(); i++)
+        for (int k = 0; k < images[i].residuals.size(); k++)
+        {
+            Eigen::VectorXd row = Eigen::VectorXd::Zero(count);
+            const int point = bundle->images()[i].points.index[k/2];
+            if (firstOfPoint[point] < 0)
+                continue;
+            row.segment<3>(firstOfPoint[point]) = images[i].inner.row(k).transpose();
+            for (size_t c = 0; c < images[i].columns.size(); c++)
+                row[images[i].columns[c]] = images[i].outer(k, c);
+            information += row*row.transpose();
+        }
+    int at = outer;
+    for (const Cluster& cluster : bundle->scene().clusters())
+    {
+        MatrixXd matrix = MatrixXd::Zero(cluster.size(), cluster.size());
+        Eigen::VectorXd gradient = Eigen::VectorXd::Zero(cluster.size());
+        cluster.addLengths(sigma, matrix, gradient);
+        information.block(at, at, cluster.size(), cluster.size()) += matrix;
+        at += cluster.size();
+    }
+    const Eigen::VectorXd scale = information.diagonal().cwiseSqrt().cwiseInverse();
+    const MatrixXd whole = sigma*sigma*scale.asDiagonal()*inverse(scale.asDiagonal()*information*scale.asDiagonal())*scale.asDiagonal();
+
+    const std::vector<Mat> ofPoses = covariance.ofPoses();
+    for (int view = 1; view < 9; view++)
+    {
+        const int first = space.first[bundle->poseBlock(view)];
+        for (int r = 0; r < 6; r++)
+            for (int c = 0; c < 6; c++)
+            {
+                const double size = std::sqrt(whole(first + r, first + r)*whole(first + c, first + c));
+                CHECK(std::abs(ofPoses[view].at<double>(r, c) - whole(first + r, first + c)) < 1e-5*size);
+            }
+    }
+    const Mat_<double> ofPoints = covariance.ofPoints();
+    for (size_t point = 0; point < scene.points.size(); point++)
+        for (int k = 0; k < 3 && firstOfPoint[point] >= 0; k++)
+            CHECK(ofPoints((int)point, k) == Approx(std::sqrt(whole(firstOfPoint[point] + k, firstOfPoint[point] + k))).epsilon(1e-5));
+}
+
+TEST_CASE("A strip's results do not depend on the number of threads", "[bundle][sparse]")
+{
+    Random random(46);
+    const RigTruth truth = makeRig(1, { 0 }, 1.333);
+    const BundleScene scene = makeStrip(truth, 12, random, 0.1);
+    const int threads = getNumThreads();
+    std::vector<ListCall> calls;
+    std::vector<double> rms;
+    for (int count : { 1, 3 })
+    {
+        Random start(11);
+        setNumThreads(count);
+        calls.emplace_back(BundleCall(truth, scene, start));
+        rms.push_back(calls.back().run(GLASS_ROBUST));
+    }
+    setNumThreads(threads);
+    CHECK(rms[0] == rms[1]);
+    CHECK(largestDifference(calls[0].call.pointDeviations, calls[1].call.pointDeviations) == 0);
+    CHECK(largestDifference(Mat(calls[0].call.points), Mat(calls[1].call.points)) == 0);
+    CHECK(largestDifference(calls[0].viewCovariances.back(), calls[1].viewCovariances.back()) == 0);
+}
+
+TEST_CASE("A sparse matrix of blocks has the factor and the inverse of the dense one", "[sparse]")
+{
+    CAPTURE(seed());
+    const int SIZE = BlockCholesky::SIZE, count = 40;
+    Random random(47);
+    BlockGraph graph(count);
+    MatrixXd dense = MatrixXd::Zero(SIZE*count, SIZE*count);
+    for (int a = 0; a < count; a++)
+        for (int b : { a + 1, a + 3, (7*a + 5) % count })
+        {
+            if (b >= count || b == a)
+                continue;
+            if (std::find(graph[a].begin(), graph[a].end(), b) == graph[a].end())
+            {
+                graph[a].push_back(b);
+                graph[b].push_back(a);
+            }
+            MatrixXd rows = MatrixXd::Zero(SIZE, SIZE*count);
+            for (int r = 0; r < SIZE; r++)
+                for (int c = 0; c < SIZE; c++)
+                {
+                    rows(r, SIZE*a + c) = random.normal(1);
+                    rows(r, SIZE*b + c) = random.normal(1);
+                }
+            dense += rows.transpose()*rows;
+        }
+    const auto fill = [&](BlockCholesky& sparse)
+    {
+        for (int k = 0; k < count; k++)
+        {
+            BlockCholesky::Column& column = sparse.column(k);
+            const int block = SIZE*sparse.blockAt(k);
+            column.diagonal = dense.block(block, block, SIZE, SIZE);
+            for (size_t i = 0; i < column.rows.size(); i++)
+                column.blocks[i] = dense.block(SIZE*sparse.blockAt(column.rows[i]), block, SIZE, SIZE);
+        }
+        sparse.factor(sparse.diagonal().cwiseSqrt(), 1e-12);
+    };
+    BlockCholesky sparse(graph);
+    fill(sparse);
+    CHECK(sparse.lost() < 0);
+    const MatrixXd whole = inverse(dense);
+    MatrixXd X = MatrixXd::Identity(SIZE*count, SIZE*count);
+    sparse.solveL(X);
+    CHECK((X.transpose()*X - whole).norm() < 1e-9*whole.norm());
+    sparse.solveTranspose(X);
+    CHECK((X - whole).norm() < 1e-9*whole.norm());
+    const BlockInverse inverted(sparse);
+    for (int a = 0; a < count; a++)
+    {
+        CHECK((inverted(a, a) - whole.block(SIZE*a, SIZE*a, SIZE, SIZE)).norm() < 1e-9*whole.norm());
+        for (int b : graph[a])
+            CHECK((inverted(a, b) - whole.block(SIZE*a, SIZE*b, SIZE, SIZE)).norm() < 1e-9*whole.norm());
+    }
+    // A block whose last coordinate nothing tells.
+    dense.row(SIZE*9 + 5).setZero();
+    dense.col(SIZE*9 + 5).setZero();
+    BlockCholesky singular(graph);
+    fill(singular);
+    CHECK(singular.lost() == 9);
+    MatrixXd b = dense*MatrixXd::Ones(SIZE*count, 1);
+    singular.solveL(b);
+    singular.solveTranspose(b);
+    CHECK(b(SIZE*9 + 5) == 0);
+    CHECK(std::abs(b(SIZE*20) - 1) < 1e-8);
+}
