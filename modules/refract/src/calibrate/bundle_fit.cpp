@@ -40,9 +40,11 @@ FitOutcome adjust(Problem& problem, const BundleTask& task)
     outcome = outliers.checkWhatIsLeft();
     if (!outcome.converged())
         return outcome;
-    RobustFit fit(problem, outliers, isRobust, problem.pointCount(), criteria);
-    outcome = searchBundle(problem, outliers, isRobust, fit);
-    if (outcome.isUsable() && !isRobust && usePointsThatStartedBadly(problem))
+    RobustFit fit(problem, outliers, isRobust, problem.pointCount(), criteria), another = fit;
+    if (isRobust)
+        return searchRobustBundle(problem, outliers, fit, another);
+    outcome = searchBundle(problem, outliers, fit);
+    if (outcome.isUsable() && usePointsThatStartedBadly(problem))
         outcome = RobustFit(problem, outliers, false, problem.pointCount(), criteria).run();
     return outcome;
 }

@@ -9,6 +9,7 @@ whenever the cameras have moved. */
 #include "calibrate/bundle_search.hpp"
 #include "adjust/other_points.hpp"
 #include "adjust/ray_midpoints.hpp"
+#include "math/robust_scale.hpp"
 
 namespace cv { namespace refract {
 
@@ -30,6 +31,12 @@ class Snapshot
 public:
     explicit Snapshot(const Problem& problem) : points_(problem.scene().points()), pixelSigma_(problem.pixelSigma())
     {
+        for (const Image& image : problem.images())
+        {
+            inliers_.push_back(std::vector<uchar>());
+            for (double weight : image.rootWeights)
+                inliers_.back().push_back(weight > 0);
+        }
         for (const ParameterBlock& block : problem.blocks())
         {
             values_.push_back(block.values);
@@ -45,11 +52,12 @@ public:
         }
         problem.updateCameras();
         problem.setPixelSigma(pixelSigma_);
-        problem.setPoints(points_, Masks());
+        problem.setPoints(points_, inliers_);
     }
 
 private:
     std::vector<Point3d> points_;
+    Masks inliers_;
     double pixelSigma_;
     std::vector<Eigen::VectorXd> values_;
     std::vector<std::vector<bool> > isHeld_;
@@ -123,21 +131,91 @@ FitOutcome runByPointsOfOneMinimum(Problem& problem, const SceneOutliers& outlie
     return outcome;
 }
 
-} // namespace
-
-FitOutcome searchBundle(Problem& problem, const SceneOutliers& outliers, bool isRobust, RobustFit& fit)
+FitOutcome approachAndRun(Problem& problem, const SceneOutliers& outliers, RobustFit& fit)
 {
     // Normals, R and T, poses and points first: while they are far off, distances and lenses would run away along what makes up
     // for them, into other minima.
     holdMediaAndLenses(problem, true);
     FitOutcome outcome = approach(problem, outliers, fit);
     holdMediaAndLenses(problem, false);
-    if (outcome.isUsable())
-        outcome = run(problem, fit);
-    if (!outcome.isUsable() || isRobust)        // outliers leave points out too
-        return outcome;
-    const FitOutcome other = runByPointsOfOneMinimum(problem, outliers, fit);
+    return outcome.isUsable() ? run(problem, fit) : outcome;
+}
+
+//! The windows' places stay while it lives.
+class HeldPlaces
+{
+public:
+    explicit HeldPlaces(Problem& problem) : problem_(problem)
+    {
+        for (ParameterBlock& block : problem.blocks())
+        {
+            isFree_.push_back(block.isFree);
+            if (block.kind == ParameterBlock::PLACE)
+                block.isFree.assign(block.isFree.size(), false);
+        }
+    }
+    ~HeldPlaces()
+    {
+        for (size_t i = 0; i < isFree_.size(); i++)
+            problem_.blocks()[i].isFree = isFree_[i];
+    }
+    HeldPlaces(const HeldPlaces&) = delete;
+    HeldPlaces& operator=(const HeldPlaces&) = delete;
+
+private:
+    Problem& problem_;
+    std::vector<std::vector<bool> > isFree_;
+};
+
+bool arePlacesFree(const Problem& problem)
+{
+    return std::any_of(problem.blocks().begin(), problem.blocks().end(), [](const ParameterBlock& block)
+    {
+        return block.kind == ParameterBlock::PLACE && std::count(block.isFree.begin(), block.isFree.end(), true) > 0;
+    });
+}
+
+//! In variances; what is left out is at the cut.
+double truncatedSquares(const Problem& problem, double variance)
+{
+    int left = 0;
+    for (const Image& image : problem.images())
+        left += (int)image.rootWeights.size() - image.usedCount();
+    return problem.squaredError()/variance + CUT*CUT*left;
+}
+
+} // namespace
+
+FitOutcome searchBundle(Problem& problem, const SceneOutliers& outliers, RobustFit& fit)
+{
+    const FitOutcome outcome = approachAndRun(problem, outliers, fit);
+    const FitOutcome other = outcome.isUsable() ? runByPointsOfOneMinimum(problem, outliers, fit) : outcome;
     return other.converged() ? other : outcome;
+}
+
+FitOutcome searchRobustBundle(Problem& problem, const SceneOutliers& outliers, RobustFit& fit, RobustFit& another)
+{
+    const Snapshot start(problem);
+    const FitOutcome outcome = approachAndRun(problem, outliers, fit);
+    if (!arePlacesFree(problem))
+        return outcome;
+    const Snapshot found(problem);
+    const double variance = varianceOf(problem);
+    start.restore(problem);
+    FitOutcome other;
+    {
+        const HeldPlaces held(problem);
+        other = approachAndRun(problem, outliers, another);
+    }
+    if (other.isUsable())
+        other = run(problem, another);
+    const double least = std::min(variance, varianceOf(problem)), squares = truncatedSquares(problem, least);
+    const Snapshot ofOther(problem);
+    found.restore(problem);
+    if (!other.converged() || (outcome.converged() && truncatedSquares(problem, least) <= squares))
+        return outcome;
+    ofOther.restore(problem);
+    return other;
 }
 
 }} // namespace
