@@ -79,7 +79,13 @@ void addBent(int number, Tally& tally)
     const RigTruth rig = makeBentTrio();
     BundleScene scene = makeDeepScene(rig, random);
     const std::vector<std::vector<uchar> > isWrong = spoilSome(scene, random);
-    BundleCall call(rig, scene, random, 0);
+    BundleCall call(rig, scene, random, 0.2);       // degrees, and 1.2 mm
+    for (size_t c = 0; c < rig.cameras.size(); c++)
+    {
+        GlassWindow window = rig.cameras[c]->window();
+        window.normal = normalize(window.normal + random.vector(0.01));
+        call.cameras[c]->setWindow(window);
+    }
     call.run(GLASS_FREE_EXTRINSICS | GLASS_ROBUST);
     int row = 0;
     for (size_t c = 0; c < rig.cameras.size(); c++)
@@ -118,7 +124,7 @@ void print(const Tally& tally, int sets)
 TEST_CASE("Wrong matches do not turn windows of which images tell little", "[bundle][robust][bent]")
 {
     Tally tally;
-    for (int number : { 1, 2 })
+    for (int number : { 3, 5 })
         addBent(number, tally);
     CHECK(tally.turned == 0);
 }
@@ -131,7 +137,7 @@ TEST_CASE("Bent panes and wrong matches: what turns, and the errors over what is
     {
         const int before = tally.turned;
         addBent(number, tally);
-        if (tally.turned > before)
+        if (tally.turned > before)      // so that one can be looked at alone
             std::cout << "number " << number << " turned\n";
     }
     print(tally, trials(100));
