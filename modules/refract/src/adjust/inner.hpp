@@ -19,6 +19,12 @@ bool optimizeInner(Problem& problem, double& squaredError);
 bool optimizePoses(Problem& problem, double& squaredError);         //!< of targets
 bool optimizePoints(Problem& problem, double& squaredError);        //!< of a scene
 
+/** A scene's clusters each by itself: the squares of each at its best, which is where it is then; infinite where one of its points has
+no image to begin with, and stays there. */
+std::vector<double> optimizeClusters(Problem& problem);
+//! The information of each cluster's coordinates where it is, the cameras staying.
+std::vector<Eigen::MatrixXd> clusterInformation(const Problem& problem);
+
 //! All values of the inner blocks, one block after the other: to come back to.
 Eigen::VectorXd innerValues(const Problem& problem);
 void setInnerValues(Problem& problem, const Eigen::VectorXd& values);

@@ -4,6 +4,7 @@
 
 #include "adjust/inner.hpp"
 #include "math/dense.hpp"
+#include <numeric>
 
 namespace cv { namespace refract {
 
@@ -88,17 +89,26 @@ VectorXd stepOf(const ClusterSquares& sum, double damping, double& gain)
     return scale.cwiseProduct(step);
 }
 
+//! Of the clusters that have an image: what one of them may still gain is little against it.
+double meanSquares(const std::vector<ClusterSearch>& searches)
+{
+    double sum = 0;
+    for (const ClusterSearch& search : searches)
+        if (std::isfinite(search.best.value))
+            sum += search.best.value;
+    return sum/std::max((double)searches.size(), 1.);
+}
+
 } // namespace
 
-bool optimizePoints(Problem& problem, double& squaredError)
+std::vector<double> optimizeClusters(Problem& problem)
 {
     const int ROUNDS = 50;
     std::vector<Cluster>& clusters = problem.scene().clusters();
     std::vector<ClusterSearch> searches(clusters.size());
     SceneRows rows(problem);
-    double mean = 0;            // of the clusters' squares: what one may still gain is little against it
-    bool isPossible = true, areDone = false;
-    for (int round = 0; round < ROUNDS && isPossible && !areDone; round++)
+    bool areDone = false;
+    for (int round = 0; round < ROUNDS && !areDone; round++)
     {
         rows.update();
         parallel_for_(Range(0, (int)clusters.size()), [&](const Range& range)
@@ -120,15 +130,12 @@ bool optimizePoints(Problem& problem, double& squaredError)
                 }
             }
         });
-        squaredError = 0;
-        for (const ClusterSearch& search : searches)
-            squaredError += search.best.value;
-        isPossible = std::isfinite(squaredError);
-        mean = squaredError/std::max((double)clusters.size(), 1.);
+        const double mean = meanSquares(searches);
         areDone = true;
-        for (size_t i = 0; i < clusters.size() && isPossible; i++)
+        for (size_t i = 0; i < clusters.size(); i++)
         {
             ClusterSearch& search = searches[i];
+            search.isDone = search.isDone || !std::isfinite(search.best.value);
             if (search.isDone)
                 continue;
             double gain;
@@ -140,11 +147,31 @@ bool optimizePoints(Problem& problem, double& squaredError)
         }
         problem.placePoints(problem.scene().points());
     }
+    std::vector<double> squares;
+    for (const ClusterSearch& search : searches)
+        squares.push_back(search.best.value);
+    return squares;
+}
+
+std::vector<MatrixXd> clusterInformation(const Problem& problem)
+{
+    SceneRows rows(problem);
+    rows.update();
+    std::vector<MatrixXd> matrices;
+    for (int i = 0; i < (int)problem.scene().clusters().size(); i++)
+        matrices.push_back(rows.squaresOf(i).matrix);
+    return matrices;
+}
+
+bool optimizePoints(Problem& problem, double& squaredError)
+{
+    const std::vector<double> squares = optimizeClusters(problem);
+    squaredError = std::accumulate(squares.begin(), squares.end(), 0.);
     for (int block = 0; block < problem.outerCount(); block++)
         squaredError += problem.priorResidual(block).squaredNorm();
     if (problem.rigPrior().count() > 0)
         squaredError += problem.rigPriorResidual().squaredNorm();
-    return isPossible;
+    return std::isfinite(squaredError);
 }
 
 }} // namespace

@@ -67,6 +67,7 @@ public:
 
 private:
     bool tellsScale() const;
+    bool bringBackWhatLengthsAllow(const std::vector<Point3d>& points, const Masks& before, double scale, Masks& inliers);
     Problem& problem_;
     const ScaleSources scale_;
 };

@@ -7,6 +7,7 @@ stays only if more than half of its observations are inliers, and two equations 
 without outliers needs three coordinates. */
 
 #include "adjust/outliers.hpp"
+#include "adjust/inner.hpp"
 #include "adjust/ray_midpoints.hpp"
 #include "math/robust_scale.hpp"
 #include <set>
@@ -90,6 +91,52 @@ FitOutcome SceneOutliers::setInliers(Masks& inliers)
     return checkWhatIsLeft();
 }
 
+namespace {
+
+//! Whether pixels and lengths agree where both together have the points.
+bool isConsistent(const Problem& problem, int cluster, const Masks& inliers, double scale, const std::vector<std::vector<double> >& errors)
+{
+    for (const Observation& o : problem.observationsOf(cluster))
+        if (inliers[o.image][o.row] && !(errors[o.image][o.row] < CUT*scale))
+            return false;
+    const Cluster& points = problem.scene().clusters()[cluster];
+    return points.lengths.empty() || points.squaredLengthError(1) < CUT*CUT*(double)points.lengths.size();
+}
+
+} // namespace
+
+/** Rays of wrong matches meet where no length has a point, and the cameras of a fit would follow the length. So points come back only
+where images and lengths agree, the cameras staying.
+@param before inliers without these points
+@return whether one comes back */
+bool SceneOutliers::bringBackWhatLengthsAllow(const std::vector<Point3d>& points, const Masks& before, double scale, Masks& inliers)
+{
+    problem_.setPoints(points, inliers);
+    optimizeClusters(problem_);
+    std::vector<Point3d> kept = problem_.scene().points();
+    problem_.placePoints(kept);
+    std::vector<std::vector<double> > errors;
+    for (const Image& image : problem_.images())
+        errors.push_back(problem_.pixelErrors(image));
+    bool isAny = false;
+    for (int i = 0; i < (int)problem_.scene().clusters().size(); i++)
+    {
+        const bool isGood = isConsistent(problem_, i, inliers, scale, errors);
+        for (const Observation& o : problem_.observationsOf(i))
+        {
+            uchar& isInlier = inliers[o.image][o.row];
+            if (!isInlier || before[o.image][o.row])
+                continue;
+            isAny = isAny || isGood;
+            isInlier = isGood;
+            if (!isGood)
+                kept[problem_.images()[o.image].points.index[o.row]] = NOWHERE;
+        }
+    }
+    problem_.setPoints(kept, inliers);
+    return isAny;
+}
+
 /** Points that are not in use, where their rays come closest; while that is not near all of them, the observation that is
 farthest off is left out. */
 bool SceneOutliers::bringBack(Masks& inliers, double scale)
@@ -97,6 +144,7 @@ bool SceneOutliers::bringBack(Masks& inliers, double scale)
     const int ROUNDS = 10;
     std::vector<Point3d> points = problem_.scene().points();
     const int count = (int)points.size();
+    const Masks before = inliers;
     Masks trial = inliers;
     for (size_t i = 0; i < trial.size(); i++)
         for (size_t row = 0; row < trial[i].size(); row++)
@@ -140,10 +188,7 @@ bool SceneOutliers::bringBack(Masks& inliers, double scale)
                     trial[i][row] = 0;
                 }
     }
-    if (!found)
-        return false;
-    problem_.setPoints(points, inliers);
-    return true;
+    return found && bringBackWhatLengthsAllow(points, before, scale, inliers);
 }
 
 Masks SceneOutliers::candidates() const

@@ -5,6 +5,7 @@
 /* Start, fit, and what it tells. Points that start badly are tried again from where the fit has come to. */
 
 #include "calibrate/bundle_fit.hpp"
+#include "calibrate/bundle_search.hpp"
 #include "adjust/covariance.hpp"
 #include "adjust/ray_midpoints.hpp"
 #include "adjust/robust_fit.hpp"
@@ -13,14 +14,6 @@
 namespace cv { namespace refract {
 
 namespace {
-
-void holdMediaAndLenses(Problem& problem, bool isHeld)
-{
-    for (ParameterBlock& block : problem.blocks())
-        if (block.kind == ParameterBlock::MEDIA || block.kind == ParameterBlock::LENS)
-            for (size_t i = 0; i < block.isFree.size(); i++)
-                block.isHeld[i] = isHeld && block.isFree[i];
-}
 
 bool usePointsThatStartedBadly(Problem& problem)
 {
@@ -47,15 +40,11 @@ FitOutcome adjust(Problem& problem, const BundleTask& task)
     outcome = outliers.checkWhatIsLeft();
     if (!outcome.converged())
         return outcome;
-    // Normals, R and T, poses and points first: while they are far off, distances and lenses would run away along what makes up
-    // for them, into other minima.
-    RobustFit fit(problem, outliers, isRobust, problem.pointCount(), criteria);
-    holdMediaAndLenses(problem, true);
-    outcome = fit.approach();
-    holdMediaAndLenses(problem, false);
-    if (outcome.isUsable())
-        outcome = fit.run();
-    if (outcome.isUsable() && !isRobust && usePointsThatStartedBadly(problem))
+    RobustFit fit(problem, outliers, isRobust, problem.pointCount(), criteria), another = fit;
+    if (isRobust)
+        return searchRobustBundle(problem, outliers, fit, another);
+    outcome = searchBundle(problem, outliers, fit);
+    if (outcome.isUsable() && usePointsThatStartedBadly(problem))
         outcome = RobustFit(problem, outliers, false, problem.pointCount(), criteria).run();
     return outcome;
 }

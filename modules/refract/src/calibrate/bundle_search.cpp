@@ -1,0 +1,221 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+/* Lengths and halves of pixels leave minima beside the right one. A point in a wrong one drags the cameras along, until all fit badly
+and none is left alone. So cameras come near by points of which no other minimum is nearly as low, and all points go to their least one
+whenever the cameras have moved. */
+
+#include "calibrate/bundle_search.hpp"
+#include "adjust/other_points.hpp"
+#include "adjust/ray_midpoints.hpp"
+#include "math/robust_scale.hpp"
+
+namespace cv { namespace refract {
+
+namespace {
+
+const int ROUNDS = 10;          // of points that go to other minima
+
+void holdMediaAndLenses(Problem& problem, bool isHeld)
+{
+    for (ParameterBlock& block : problem.blocks())
+        if (block.kind == ParameterBlock::MEDIA || block.kind == ParameterBlock::LENS)
+            for (size_t i = 0; i < block.isFree.size(); i++)
+                block.isHeld[i] = isHeld && block.isFree[i];
+}
+
+//! Of a problem, to come back to.
+class Snapshot
+{
+public:
+    explicit Snapshot(const Problem& problem) : points_(problem.scene().points()), pixelSigma_(problem.pixelSigma())
+    {
+        for (const Image& image : problem.images())
+        {
+            inliers_.push_back(std::vector<uchar>());
+            for (double weight : image.rootWeights)
+                inliers_.back().push_back(weight > 0);
+        }
+        for (const ParameterBlock& block : problem.blocks())
+        {
+            values_.push_back(block.values);
+            isHeld_.push_back(block.isHeld);
+        }
+    }
+    void restore(Problem& problem) const
+    {
+        for (size_t i = 0; i < values_.size(); i++)
+        {
+            problem.blocks()[i].values = values_[i];
+            problem.blocks()[i].isHeld = isHeld_[i];
+        }
+        problem.updateCameras();
+        problem.setPixelSigma(pixelSigma_);
+        problem.setPoints(points_, inliers_);
+    }
+
+private:
+    std::vector<Point3d> points_;
+    Masks inliers_;
+    double pixelSigma_;
+    std::vector<Eigen::VectorXd> values_;
+    std::vector<std::vector<bool> > isHeld_;
+};
+
+double varianceOf(const Problem& problem) { return problem.squaredError()/std::max(problem.freedom(), 1); }
+
+int countFinite(const std::vector<Point3d>& points)
+{
+    return (int)std::count_if(points.begin(), points.end(), [](const Point3d& point) { return std::isfinite(point.x); });
+}
+
+/** Points of which another minimum is nearly as low have no say for a while; then all are where the rest has them least.
+@param fit what is done without them
+@return how many points the others are; 0: there are no such points, or the others do not determine what is free */
+template<class Fit>
+int decideByPointsOfOneMinimum(Problem& problem, const SceneOutliers& outliers, Fit fit)
+{
+    const std::vector<Point3d> some = pointsOfOneMinimum(problem), all = problem.scene().points();
+    const int count = countFinite(some);
+    if (count == countFinite(all))
+        return 0;
+    problem.setPoints(some, Masks());
+    const bool isEnough = count > 0 && outliers.checkWhatIsLeft().converged();
+    if (isEnough)
+        fit();
+    std::vector<Point3d> now = isEnough ? startPoints(problem, problem.scene().points()) : all;
+    for (size_t i = 0; i < now.size(); i++)
+        now[i] = std::isfinite(now[i].x) ? now[i] : all[i];
+    problem.setPoints(startPoints(problem, now), Masks());
+    moveToLeastMinima(problem);
+    return isEnough ? count : 0;
+}
+
+//! From where the start is.
+FitOutcome approach(Problem& problem, const SceneOutliers& outliers, RobustFit& fit)
+{
+    for (int used = 0, before = -1; used > before; )
+    {
+        before = used;
+        used = decideByPointsOfOneMinimum(problem, outliers, [&]() { fit.approach(); });
+    }
+    FitOutcome outcome = fit.approach();
+    for (int round = 0; round < ROUNDS && outcome.isUsable() && moveToLeastMinima(problem); round++)
+        outcome = fit.approach();
+    return outcome;
+}
+
+FitOutcome run(Problem& problem, RobustFit& fit)
+{
+    FitOutcome outcome = fit.run();
+    for (int round = 0; round < ROUNDS && outcome.isUsable() && moveToLeastMinima(problem); round++)
+        outcome = fit.run();
+    return outcome;
+}
+
+/** What hardly tells a minimum from another may have chosen the wrong one, and the cameras follow. Without it, they may not.
+@return converged if that was better */
+FitOutcome runByPointsOfOneMinimum(Problem& problem, const SceneOutliers& outliers, RobustFit& fit)
+{
+    const Snapshot before(problem);
+    const double variance = varianceOf(problem);
+    FitOutcome outcome(FitOutcome::MAX_ITERATIONS);
+    if (decideByPointsOfOneMinimum(problem, outliers, [&]() { fit.run(); }))
+        outcome = run(problem, fit);
+    if (!outcome.converged() || !(varianceOf(problem) < variance))
+    {
+        before.restore(problem);
+        outcome.status = FitOutcome::MAX_ITERATIONS;
+    }
+    return outcome;
+}
+
+FitOutcome approachAndRun(Problem& problem, const SceneOutliers& outliers, RobustFit& fit)
+{
+    // Normals, R and T, poses and points first: while they are far off, distances and lenses would run away along what makes up
+    // for them, into other minima.
+    holdMediaAndLenses(problem, true);
+    FitOutcome outcome = approach(problem, outliers, fit);
+    holdMediaAndLenses(problem, false);
+    return outcome.isUsable() ? run(problem, fit) : outcome;
+}
+
+//! The windows' places stay while it lives.
+class HeldPlaces
+{
+public:
+    explicit HeldPlaces(Problem& problem) : problem_(problem)
+    {
+        for (ParameterBlock& block : problem.blocks())
+        {
+            isFree_.push_back(block.isFree);
+            if (block.kind == ParameterBlock::PLACE)
+                block.isFree.assign(block.isFree.size(), false);
+        }
+    }
+    ~HeldPlaces()
+    {
+        for (size_t i = 0; i < isFree_.size(); i++)
+            problem_.blocks()[i].isFree = isFree_[i];
+    }
+    HeldPlaces(const HeldPlaces&) = delete;
+    HeldPlaces& operator=(const HeldPlaces&) = delete;
+
+private:
+    Problem& problem_;
+    std::vector<std::vector<bool> > isFree_;
+};
+
+bool arePlacesFree(const Problem& problem)
+{
+    return std::any_of(problem.blocks().begin(), problem.blocks().end(), [](const ParameterBlock& block)
+    {
+        return block.kind == ParameterBlock::PLACE && std::count(block.isFree.begin(), block.isFree.end(), true) > 0;
+    });
+}
+
+//! In variances; what is left out is at the cut.
+double truncatedSquares(const Problem& problem, double variance)
+{
+    int left = 0;
+    for (const Image& image : problem.images())
+        left += (int)image.rootWeights.size() - image.usedCount();
+    return problem.squaredError()/variance + CUT*CUT*left;
+}
+
+} // namespace
+
+FitOutcome searchBundle(Problem& problem, const SceneOutliers& outliers, RobustFit& fit)
+{
+    const FitOutcome outcome = approachAndRun(problem, outliers, fit);
+    const FitOutcome other = outcome.isUsable() ? runByPointsOfOneMinimum(problem, outliers, fit) : outcome;
+    return other.converged() ? other : outcome;
+}
+
+FitOutcome searchRobustBundle(Problem& problem, const SceneOutliers& outliers, RobustFit& fit, RobustFit& another)
+{
+    const Snapshot start(problem);
+    const FitOutcome outcome = approachAndRun(problem, outliers, fit);
+    if (!arePlacesFree(problem))
+        return outcome;
+    const Snapshot found(problem);
+    const double variance = varianceOf(problem);
+    start.restore(problem);
+    FitOutcome other;
+    {
+        const HeldPlaces held(problem);
+        other = approachAndRun(problem, outliers, another);
+    }
+    if (other.isUsable())
+        other = run(problem, another);
+    const double least = std::min(variance, varianceOf(problem)), squares = truncatedSquares(problem, least);
+    const Snapshot ofOther(problem);
+    found.restore(problem);
+    if (!other.converged() || (outcome.converged() && truncatedSquares(problem, least) <= squares))
+        return outcome;
+    ofOther.restore(problem);
+    return other;
+}
+
+}} // namespace

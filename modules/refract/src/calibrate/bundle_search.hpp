@@ -1,0 +1,21 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#ifndef OPENCV_REFRACT_BUNDLE_SEARCH_HPP
+#define OPENCV_REFRACT_BUNDLE_SEARCH_HPP
+
+#include "adjust/robust_fit.hpp"
+
+namespace cv { namespace refract {
+
+//! From a start of cameras, views and points to the least of the minima that points have beside the right one.
+FitOutcome searchBundle(Problem& problem, const SceneOutliers& outliers, RobustFit& fit);
+/** The same with outliers. Before they are known, they turn windows of which images tell little, and what is left out then follows. So the
+fit is made twice, once with the windows where the start has them until outliers are known, and the better one kept.
+@param another as fit */
+FitOutcome searchRobustBundle(Problem& problem, const SceneOutliers& outliers, RobustFit& fit, RobustFit& another);
+
+}} // namespace
+
+#endif // OPENCV_REFRACT_BUNDLE_SEARCH_HPP

@@ -1,0 +1,128 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+// Bundles of a wand in which one camera tells half of each pixel: a length and a ray meet twice, so that points have two minima.
+#include "bundle_scenes.hpp"
+#include "round_scenes.hpp"
+
+using namespace cv;
+using namespace cv::refract;
+using namespace scenes;
+
+namespace {
+
+const double SIGMA = 0.2;
+
+//! Three cameras that look at the wand from the left, the middle and the right, behind panes or in domes.
+RigTruth makeTrio(bool inDomes, Random& random)
+{
+    RigTruth rig = makeRig(3, { 0, 1, 2 }, 1.33, 0.25);
+    for (const Ptr<RefractiveCamera>& camera : rig.cameras)
+        if (inDomes)
+            camera->setWindow(domeAt(Vec3d(12, -15, 18) + random.vector(5), 1.33));
+    return rig;
+}
+
+//! The last camera sees u of one end of the wand, v of the other.
+void forgetHalves(PixelViews& views)
+{
+    for (std::vector<Point2d>& view : views)
+        for (size_t i = 0; i < view.size(); i++)
+            (i % 2 == 0 ? view[i].y : view[i].x) = NaN;
+}
+
+//! From a rig that is a little off.
+struct TrioCall : BundleCall
+{
+    TrioCall(const RigTruth& rig, const BundleScene& scene, Random& random, double off) : BundleCall(rig, scene, random, off)
+    {
+        for (size_t c = 0; c < cameras.size(); c++)
+        {
+            GlassWindow window = rig.cameras[c]->window();
+            if (window.shape == WINDOW_FLAT)
+                window.normal = normalize(window.normal + random.vector(0.03*off));
+            else
+                window.center += random.vector(3*off);
+            cameras[c]->setWindow(window);
+        }
+    }
+
+    //! e^T C^-1 e of R and T of the other cameras over its twelve degrees of freedom.
+    double overStated(const RigTruth& rig) const
+    {
+        int row = 0;
+        for (const Ptr<RefractiveCamera>& camera : cameras)
+            row += (int)camera->parameterNames().size();
+        std::vector<double> errors;
+        std::vector<int> rows;
+        for (size_t c = 1; c < cameras.size(); c++)
+        {
+            Vec3d found, right;
+            Rodrigues(Rs[c], found);
+            Rodrigues(rig.Rs[c], right);
+            const Vec3d turn = found - right, T = Vec3d(Ts[c].at<double>(0), Ts[c].at<double>(1), Ts[c].at<double>(2)) - rig.Ts[c];
+            for (int k = 0; k < 6; k++)
+            {
+                errors.push_back(k < 3 ? turn[k] : T[k - 3]);
+                rows.push_back(row++);
+            }
+        }
+        return squaredMahalanobis(errors, covariance, rows)/(double)rows.size();
+    }
+};
+
+const double OFF = 0.15;        // degrees, and a millimetre
+
+//! @return the RMS that the module's own start leads to, and what the true points do
+Vec2d fitFromBoth(bool inDomes, int number, double& overStated)
+{
+    Random random(5000 + number);
+    const RigTruth rig = makeTrio(inDomes, random);
+    BundleScene scene = makeWandScene(rig, 80, random, SIGMA, 0.35);
+    forgetHalves(scene.pixels[2]);
+    Vec2d rms;
+    for (bool fromTruth : { true, false })
+    {
+        Random same(7000 + number);
+        TrioCall call(rig, scene, same, fromTruth ? 0 : OFF);
+        if (fromTruth)
+            call.points = scene.points;
+        rms[fromTruth] = call.run(GLASS_FREE_EXTRINSICS);
+        overStated = call.overStated(rig);
+    }
+    return rms;
+}
+
+} // namespace
+
+TEST_CASE("A wand before half a camera is found where the true points have it", "[bundle][half]")
+{
+    for (bool inDomes : { false, true })
+        for (int number = 1; number <= trials(4); number++)
+        {
+            double overStated;
+            const Vec2d rms = fitFromBoth(inDomes, number, overStated);
+            INFO((inDomes ? "domes" : "panes") << ", number " << number);
+            CHECK(std::abs(rms[0] - rms[1]) < 1e-3*rms[1]);
+        }
+}
+
+// Run with [.half-pixel-minima].
+TEST_CASE("Wands before half a camera: how many are right, and the errors over what is stated", "[.half-pixel-minima]")
+{
+    const int TRIALS = trials(40);
+    for (bool inDomes : { false, true })
+    {
+        int right = 0;
+        double sum = 0;
+        for (int number = 1; number <= TRIALS; number++)
+        {
+            double overStated;
+            const Vec2d rms = fitFromBoth(inDomes, number, overStated);
+            right += std::abs(rms[0] - rms[1]) < 1e-3*rms[1];
+            sum += overStated;
+        }
+        std::cout << "[numbers] wand, half a camera, " << (inDomes ? "domes" : "panes") << ": where true points lead " << right << " of "
+                  << TRIALS << ", squared error of R and T over stated " << sum/TRIALS << " (seed " << seed() << ")\n";
+    }
+}
