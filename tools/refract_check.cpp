@@ -371,7 +371,8 @@ std::string whyNot(const CheckResult& result, const Options& o, const CheckInput
         const std::string change = window.lengthPerDegree > 0. ? "a motion of the centre by " + detected(window, o)
                                                                : format("a tilt of %g deg", o.detect);
         return noisy + format("camera %d: these images would show %s with a probability of only %.0f %%, so 'unchanged' "
-                              "cannot be said; ", window.camera + 1, change.c_str(), 100.*power) + more + (shown > 0. ? format("ask for --detect=%g", shown) : std::string("ask for a larger --detect"));
+                              "cannot be said; ", window.camera + 1, change.c_str(), 100.*power) + more
+            + (shown > 0. ? format("ask for --detect=%g", shown) : std::string("ask for a larger --detect"));
     }
     if (result.windows.empty())
         return "the images do not tell where any window is: take a pair without and with the window, or more images";

@@ -156,5 +156,6 @@ TEST_CASE("A square that is no other unit, and cameras exchanged, are named, and
     CHECK_THAT(calibrate("25", "glass1", "glass2"), Catch::Contains("--square would be 38.9 in place of 25")
                                                     || Catch::Contains("--square would be 39 in place of 25"));
     // What is left is what the boards moved, within --placement-std.
-    CHECK_THAT(calibrate("39", "glass2", "glass1"), Catch::Contains("--glass and --glass2 exchanged") && !Catch::Contains("something else"));
+    CHECK_THAT(calibrate("39", "glass2", "glass1"), Catch::Contains("--glass and --glass2 exchanged")
+                                                    && !Catch::Contains("something else"));
 }

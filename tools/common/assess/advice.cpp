@@ -143,8 +143,7 @@ Advice adviseImages(const RigCalibration& calibration)
     const ViewPlanner planner(calibration);
     Advice advice;
     advice.now = planner.qualityOf(planner.now());
-    const std::vector<View>& views = calibration.data.views;
-    advice.arePairs = std::any_of(views.begin(), views.end(), [](const View& view) { return view.countDirect() > 0; });
+    advice.arePairs = calibration.data.hasDirect();
     const Kind kind = advice.arePairs ? PAIR : GLASS_ONLY;
     if (!(calibration.square > 0))      // where another target would be put nobody knows
         return advice;

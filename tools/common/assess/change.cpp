@@ -348,8 +348,12 @@ std::vector<ChangedValue> valuesOf(const Change& change, const VectorXd& delta, 
         const VectorXd part = delta.segment(at, quantity.count);
         const double length = quantity.count == 1 ? part[0] : part.norm();
         const VectorXd along = quantity.count == 1 || !(length > 0.) ? VectorXd(VectorXd::Unit(quantity.count, 0)) : VectorXd(part/length);
-        const double variance = along.dot(covariance.block(at, at, quantity.count, quantity.count)*along);
-        values.push_back({quantity.factor*length, quantity.factor*std::sqrt(std::max(0., variance)), quantity.unit});
+        const MatrixXd C = covariance.block(at, at, quantity.count, quantity.count);
+        const double variance = along.dot(C*along), across = std::max(0., C.trace() - variance);
+        // Errors across it make a vector longer, whatever they are: by as much it may be too long.
+        const double longer = length - std::sqrt(std::max(0., length*length - across));
+        values.push_back({quantity.factor*length, quantity.factor*std::hypot(std::sqrt(std::max(0., variance)),
+                                                                             quantity.count > 1 ? longer : 0.), quantity.unit});
         at += quantity.count;
     }
     return values;

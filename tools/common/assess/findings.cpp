@@ -135,8 +135,9 @@ void checkTilt(const RigCalibration& c, int camera, Collected& f)
     {
         f.add(A_PARAMETER, of(c, camera) + format("the window's tilt is uncertain by %.2g deg: ", std)
                          + (pairs ? "take more pairs, with the board all over the image"
+                            : !c.data.hasDirect() ? "take more images, near and far, tilted to all sides, with the board all over the image"
                             : "take pairs (the board not moved between an image without and one with the window)"));
-        if (!pairs)
+        if (!pairs && c.data.hasDirect())
             f.cannotTell.push_back(of(c, camera) + "much about the tilt: no image without the window shows the board in the same "
                                    "place, so tilt and board poses are correlated. Pairs are worth 30 to 90 times more than "
                                    "such glass-only views");
@@ -231,10 +232,13 @@ void checkWindow(const RigCalibration& c, int camera, Collected& f)
     if (other && !other->isExcluded())
         f.add(THE_DATA, of(c, camera) + other->sentence());
     if (equalMedia(window) && !isRound(window))
-        f.cannotTell.push_back(of(c, camera) + "the distance from camera to window: with the same medium on both sides it has "
-                               + (std.distance > 0. ? format("an effect only as far as the faces are not parallel (%.4g +- %.2g %s)",
-                                                             window.distance, std.distance, c.unit.c_str())
-                                                    : std::string("no effect on the image where faces are parallel")) + ", and is not needed");
+    {
+        const std::string effect = std.distance > 0. ? format("an effect only as far as the faces are not parallel (%.4g +- %.2g %s)",
+                                                              window.distance, std.distance, c.unit.c_str())
+                                                     : std::string("no effect on the image where faces are parallel");
+        f.cannotTell.push_back(of(c, camera) + "the distance from camera to window: with the same medium on both sides it has " + effect
+                               + ", and is not needed");
+    }
 }
 
 //! Thickness and index of a single layer: what shows at small angles, and how well it is known.

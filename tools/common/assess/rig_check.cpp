@@ -345,7 +345,8 @@ private:
         if (result_.explained)
             named_.erase(std::remove_if(named_.begin(), named_.end(), [&](const Candidate& c) { return !isExplained(c); }), named_.end());
         // What explains as much is told in the order of what can happen: nobody said that the pane is another.
-        std::stable_partition(named_.begin(), named_.end(), [](const Candidate& c) { return !c.tested || !c.tested->change->isOfAnotherPane; });
+        std::stable_partition(named_.begin(), named_.end(), [](const Candidate& c) {
+            return !c.tested || !c.tested->change->isOfAnotherPane; });
         std::vector<NamedChange>& changes = result_.changes;
         for (const Candidate& c : named_)           // a board that looks the same turned by half can be numbered in two ways
             if (std::none_of(changes.begin(), changes.end(), [&](const NamedChange& n) { return n.sentence == c.named.sentence; }))

@@ -114,8 +114,6 @@ GivenStd GivenStdOptions::of(const GivenValues& v) const
         throw Failure("--thickness-std, --index-std and --wedge-std are of layers: give --thickness and --index");
     if (v.equalMedia && isSaid(OUTER_INDEX))
         throw Failure("--outer-index-std: the medium on both sides of the window is what indices are relative to; leave it out");
-    if (isSaid(DISTANCE) && !v.distance)
-        throw Failure("--distance-std is of a distance that is given: add --distance");
     if (isSaid(SQUARE) && !(v.square > 0.))
         throw Failure("--square-std is of the square of a board: add --square; of points (points.csv) give --scale-std, in percent");
     if (isSaid(SCALE) && v.square > 0.)
@@ -135,9 +133,12 @@ GivenStd GivenStdOptions::of(const GivenValues& v) const
     // Between equal media parallel faces hide where they are; a wedge turns rays there.
     const bool showsDistance = isFlat && (!v.equalMedia || (layers && (std.wedge > 0. || isFree(GLASS_FREE_WEDGE))));
     if (isSaid(DISTANCE) && isFlat && !showsDistance)
-        throw Failure("--distance-std: with the same medium on both sides of the window and parallel faces the distance has no effect on the "
-                      "image; leave it out");
-    std.distance = choose(DISTANCE, 1., Std(DISTANCE_MM*v.millimetre, DEFAULT), showsDistance && v.distance && !isFree(GLASS_FREE_DISTANCE));
+        throw Failure("--distance-std: with the same medium on both sides of the window and parallel faces the distance has no effect on "
+                      "the image; leave it out");
+    if (isSaid(DISTANCE) && !v.distance)
+        throw Failure("--distance-std is of a distance that is given: add --distance");
+    std.distance = choose(DISTANCE, 1., Std(DISTANCE_MM*v.millimetre, DEFAULT),
+                          showsDistance && v.distance && !isFree(GLASS_FREE_DISTANCE));
     std.isDistanceOpen = showsDistance && v.equalMedia && !v.distance;
     std.radius = choose(RADIUS, 1., Std(RADIUS_MM*v.millimetre, DEFAULT), !isFlat && !isFree(GLASS_FREE_RADIUS));
     std.center = isFlat ? Std() : choose(CENTER, 1., Std(), false);

@@ -76,6 +76,11 @@ int RigData::countPairs(int camera) const
     return (int)std::count_if(views.begin(), views.end(), [=](const View& view) { return view.isPair(camera); });
 }
 
+bool RigData::hasDirect() const
+{
+    return std::any_of(views.begin(), views.end(), [](const View& view) { return view.countDirect() > 0; });
+}
+
 int RigData::countPairs() const
 {
     int count = 0;

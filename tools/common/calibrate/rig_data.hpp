@@ -84,6 +84,7 @@ struct RigData
 
     int countPairs(int camera) const;
     int countPairs() const;                     //!< of all cameras
+    bool hasDirect() const;                     //!< any camera; a sealed housing has none
 };
 
 /** The order in which the extrinsics of the cameras can be found, from camera 1 on: (known, new), the pair with most views in common

@@ -162,7 +162,8 @@ double allowedError(const CalibrationInput& input)
 std::string fits(const CalibrationInput& input, const Explanation& e, double clean)
 {
     const std::string text = format("the same images fit within %.2g px with ", e.px) + e.sentence;
-    return clean > 0. && e.px > std::hypot(clean, allowedError(input)) ? text + format("; or something else is wrong, as more than %.2g px is not noise", clean) : text;
+    const bool isMore = clean > 0. && e.px > std::hypot(clean, allowedError(input));
+    return isMore ? text + format("; or something else is wrong, as more than %.2g px is not noise", clean) : text;
 }
 
 } // namespace
