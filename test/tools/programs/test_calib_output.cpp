@@ -83,7 +83,8 @@ TEST_CASE("A report that cannot be written leaves the calibration", "[calib_tool
     const TemporaryFolder f;
     const std::string stereo = paths::bundled() + "/stereo";
     const ToolResult r = runTool("refract_calib --size=6x5 --square=39 --thickness=20 --index=1.5437 --camera=" + stereo
-                                 + "/truth.yml --glass='" + stereo + "/glass1/*' --no-cross-validation --quiet --out=" + (f / "c.yml") + " --summary=/dev/full");
+                                 + "/truth.yml --glass='" + stereo + "/glass1/*' --no-cross-validation --quiet"
+                                 + " --out=" + (f / "c.yml") + " --summary=/dev/full");
     CAPTURE(r.err);
     CHECK(r.code == 1);
     CHECK(mentions(r.err, "/dev/full"));

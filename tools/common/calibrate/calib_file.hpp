@@ -20,7 +20,8 @@ index, inner_index, outer_index, wedge, curvature, wavelength, materials; of a d
 distance}, glass_window_std {normal_deg, distance, center, axis_deg, radius, thickness, index, outer_index, wedge, curvature, each where
 the window has it}, rms. At top level also rms (over all cameras), covariance, residual_sigma, degrees_of_freedom, unit and
 target_square (of the board), placement_std (see GivenStd), channel (of colour images, that it is for), verdict, contradictions (what the
-data say against what was given, a sentence each), weak_points (a sentence each), window_serial, notes {key: text}, what provenance.hpp names, and command,
+data say against what was given, a sentence each), weak_points (a sentence each), window_serial,
+notes {key: text}, what provenance.hpp names, and command,
 refract_version, opencv_version, calibration_time. */
 namespace tools {
 
