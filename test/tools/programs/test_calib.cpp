@@ -548,7 +548,7 @@ TEST_CASE("refract_calib refuses with one sentence and writes nothing", "[calib_
         {inputs(f, PANE + lens(f) + " --lens=fisheye"), "--lens=fisheye is for a lens that the images determine"},
         {inputs(f, PANE + lens(f) + " --thickness-std=inf"), "--thickness-std"},
         {inputs(f, PANE + lens(f) + " --wedge-std=-1"), "--wedge-std"},
-        {inputs(f, PANE + lens(f) + " --distance-std=1"), "--distance-std and --outer-index-std: with the same medium"},
+        {inputs(f, PANE + lens(f) + " --distance-std=1"), "--distance-std: with the same medium"},
         {inputs(f, PANE + lens(f) + " --outer-index=1.333 --distance-std=1"), "add --distance"},
         {inputs(f, lens(f) + " --outer-index=1.333 --wedge-std=1"), "give --thickness and --index"},
         {inputs(f, PANE + lens(f) + " --note=a=b --note=a=c"), "another note 'a'"},

@@ -141,6 +141,15 @@ void findContradictions(const BundleStart& start, const Fit& fit, BundleFindings
             " is %.0f standard deviations from what the start says: it has changed since, or a given value is wrong", worst));
 }
 
+/** px a coordinate, of all matches, what is left out counted where the robust fit cuts: what leaves out enough makes the rest of any wrong
+matches fit. */
+double noiseOfAll(const BundleAdjustment& adjustment)
+{
+    const double CUT2 = -2.*std::log(1e-4);     // squared length of an error that is left out, in variances of a coordinate; 2 is usual
+    const double left = adjustment.seenPixels > 0 ? 1. - (double)adjustment.usedPixels/adjustment.seenPixels : 0.;
+    return adjustment.fit.sigma*std::sqrt(1. - left + left*CUT2/2.);
+}
+
 } // namespace
 
 std::string BundleFindings::verdict() const
@@ -171,10 +180,10 @@ BundleFindings findingsOf(const BundleStart& start, const GivenLengths& lengths,
     if (knownSigma > 0. && fit.sigma > NOISIER*knownSigma)
         findings.contradictions.push_back(format("the matches are off by %.3g px, where the noise is known to be %.3g px: matches are "
                                                  "wrong, or something is not as the start says", fit.sigma, knownSigma));
-    else if (!(knownSigma > 0.) && fit.sigma > NO_DETECTOR)
+    else if (!(knownSigma > 0.) && noiseOfAll(adjustment) > NO_DETECTOR)
         findings.contradictions.push_back(format("the matches are off by %.3g px, more than found points are: are the cameras in the "
                                                  "order of the start, the pixels raw and not mirrored, and is what is not free as the "
-                                                 "start says? (If they are that noisy, say --pixel-sigma)", fit.sigma));
+                                                 "start says? (If they are that noisy, say --pixel-sigma)", noiseOfAll(adjustment)));
     findings.maxRms = maxRms;
     findings.limitMet = !(maxRms > 0.) || fit.rms <= maxRms;
     return findings;
