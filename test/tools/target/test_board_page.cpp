@@ -120,7 +120,7 @@ TEST_CASE("Paper is chosen by what is on it", "[board]")
     CHECK(BoardPage(large, 1, "").paper().width > 1189);        // larger than A0: made to measure
     CHECK(BoardPage(small, 1, "200x300").paper() == cv::Size2d(200, 300));
     CHECK_THROWS_WITH(BoardPage(large, 1, "A4"), Catch::Contains("larger paper"));
-    CHECK_THROWS_WITH(BoardPage(small, 1, "80x300"), Catch::Contains("needs 122x"));
+    CHECK_THROWS_WITH(BoardPage(small, 1, "80x300"), Catch::Contains("needs 118x"));
     CHECK_THROWS_WITH(BoardPage(small, 1, "letter"), Catch::Contains("--paper"));
 }
 
