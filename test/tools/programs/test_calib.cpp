@@ -870,8 +870,12 @@ TEST_CASE("In air, too, a wedge tells where the window is, and nobody need know 
             const Vec3d found = RefractiveCamera::read(f / "calib.yml")->window().normal;
             return std::asin(norm(found.cross(normal)))*180/CV_PI/stated[0]; };
         CAPTURE(salt);
-        CHECK(deviationsOff("") < 4);
-        CHECK(deviationsOff(" --distance=250 --distance-std=1") < 4);
-        CHECK(deviationsOff(" --distance=0 --distance-std=0") > 4);         // what held there is no longer said of none
+        const double open = deviationsOff(""), given = deviationsOff(" --distance=250 --distance-std=1"),
+                     atCamera = deviationsOff(" --distance=0 --distance-std=0");
+        std::cout << cv::format("[numbers] a wedge of 3' in air, 250 mm away: normal off by %.1f standard deviations if nobody says where "
+                                "it is, %.1f if it is given, %.1f if it is taken to be at the camera\n", open, given, atCamera);
+        CHECK(open < 4);
+        CHECK(given < 4);
+        CHECK(atCamera > 4);
     }
 }

@@ -1572,7 +1572,7 @@ poses; NaN where the point is NaN.
 @param inliers V*C masks Mx1 CV_8U, row by row: 0 where a point was not seen or was rejected; empty where there is no image.
 @param flags see GlassCalibrationFlags; 0: the normals, poses and points are free. With GLASS_FIX_NORMAL alone only poses and
 points are estimated, with cameras as given, also without windows. With GLASS_ROBUST outliers are rejected: a fit with Cauchy's
-loss, then a decision for each observation; the probability to reject an inlier is 1e-4.
+loss, then a decision for each observation; an inlier is to be rejected with 1e-4 (4e-4 were, of matches with 10 % outliers).
 @param poseCovariances with GLASS_USE_POSES: one 6x6 covariance (see the conventions) of (rvec, tvec) per view, an empty one
 for a pose that is exact; noArray(): all are exact.
 @param criteria iterations and relative change of the cost at which to stop, as in calibrateGlass.
