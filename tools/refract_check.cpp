@@ -287,10 +287,12 @@ struct SceneImages
 
 SceneImages readScene(const Options& o, const Calibration& calibration, const Command& command)
 {
-    std::vector<std::string> sources;
-    for (const std::string& source : o.scene)
-        if (!source.empty())
-            sources.push_back(source);
+    std::vector<std::string> sources(o.scene.begin(), o.scene.end());
+    while (!sources.empty() && sources.back().empty())
+        sources.pop_back();
+    for (size_t c = 0; c < sources.size(); c++)
+        if (sources[c].empty())
+            throw Failure("there is no --scene" + cameraSuffix((int)c) + ": give images of each camera, in the calibration's order");
     std::vector<Frames> cameras = framesOf(sources, calibration, o.calibration);
     SceneImages result;
     for (const Frames& frames : cameras)

@@ -65,6 +65,24 @@ TEST_CASE("A stereo pair of OpenCV's names has its place, of XML and YAML too", 
     }
 }
 
+TEST_CASE("Cameras that each say where they are in one frame are related to the first", "[foreign]")
+{
+    TemporaryFolder f;
+    const auto camera = [](const std::string& R, const std::string& t) {
+        return "{\"K\": " + K + ", \"dist\": " + D + ", \"R\": " + R + ", \"t\": " + t + "}"; };
+    const std::string I = "[[1, 0, 0], [0, 1, 0], [0, 0, 1]]", turned = "[[0.8, 0, 0.6], [0, 1, 0], [-0.6, 0, 0.8]]";
+    for (const std::string first : {"[0, 0, 0]", "[10, 0, 0]"})
+    {
+        const ForeignRig rig = read(f, "{\"cam0\": " + camera(I, first) + ", \"cam1\": " + camera(turned, "[-60, 1, 2]") + "}");
+        REQUIRE(rig.cameras.size() == 2);
+        const cv::Mat R = (cv::Mat_<double>(3, 3) << 0.8, 0, 0.6, 0, 1, 0, -0.6, 0, 0.8);
+        const double shift = first == "[0, 0, 0]" ? 0 : 10;
+        const cv::Mat T = (cv::Mat_<double>(3, 1) << -60 - 0.8*shift, 1, 2 + 0.6*shift);
+        CHECK(cv::norm(rig.Rs[1], R) < 1e-12);
+        CHECK(cv::norm(rig.Ts[1], T) < 1e-9);
+    }
+}
+
 TEST_CASE("refract's own files are left to the module", "[foreign]")
 {
     TemporaryFolder f;
@@ -149,6 +167,11 @@ TEST_CASE("What a file of names and values cannot mean is refused in a sentence"
     CHECK_THAT(says("K: " + K + "\nD: none\n"), Catch::Contains("its D are no numbers"));
     CHECK_THAT(says("K: [[100, 7, 50], [0, 100, 50], [0, 0, 1]]\nD: [0, 0, 0, 0, 0]\n"), Catch::Contains("its lens cannot be one"));
     CHECK_THAT(says("name: 5\nother: [1, 2]\n"), Catch::Contains("looks like YAML, but there is no camera in it"));
+    CHECK_NOTHROW(says("--- [\na\n"));             // a bracket in what is skipped
+    CHECK_NOTHROW(says("% K = [1210 0 639\n%  0 1190 481\nhello\n"));
+    CHECK_THAT(says("a:\n  K: " + K + "\n  D: [0, 0, 0, 0, 0]\n  R: [[1, 0, 0], [0, 1, 0], [0, 0, 1]]\n  t: [0, 0, 0]\nb:\n  K: " + K
+                    + "\n  D: [0, 0, 0, 0, 0]\n  R: [[1, 0.1, 0], [0, 1, 0], [0, 0, 1]]\n  t: [nan, 0, 0]\n"),
+               Catch::Contains("camera 2") || Catch::Contains("t must have 3 numbers"));
     CHECK(says("hello").empty());
     CHECK(says("").empty());
 }

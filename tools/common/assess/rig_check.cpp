@@ -124,6 +124,7 @@ private:
     {
         if (information_.G.size() == 0)
             return;
+        const double LEFT = 1e-6;       // at least: far from straight, a gain may be more than all
         const SymmetricEigen eigen(information_.G);
         const VectorXd along = transposeTimesVector(eigen.vectors, information_.score);
         double gain = 0.;
@@ -137,7 +138,8 @@ private:
         result_.dof = problem_->observations() - told;
         if (!(result_.dof > 0.))
             throw Failure(format("%d matches are too few to tell %d numbers of what may have changed", problem_->observations(), told));
-        result_.sigma *= std::sqrt((unchanged_.chiSquare - gain)/result_.dof);
+        const double left = std::max(unchanged_.chiSquare - gain, LEFT*unchanged_.chiSquare);
+        result_.sigma *= std::sqrt(left/result_.dof);
         result_.noiseHere = result_.sigma;
     }
 

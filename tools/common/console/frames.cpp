@@ -36,7 +36,8 @@ bool readNumberedName(const std::string& pattern, NumberedName& name)
         const size_t first = at + 1 + (pattern[at + 1] == '0');
         if (end - first > most)
             continue;
-        name = {pattern.substr(0, at), pattern.substr(end + 1), end > first ? (size_t)std::stoi(pattern.substr(first, end - first)) : 1};
+        const std::string digits = pattern.substr(first, end - first);
+        name = {pattern.substr(0, at), pattern.substr(end + 1), digits.empty() ? 1 : std::max<size_t>(1, std::stoul(digits))};
         return true;
     }
     return false;
@@ -60,7 +61,7 @@ bool findNumbered(const std::string& source, std::vector<std::string>& files, st
             || name.compare(name.size() - after.size(), after.size(), after) != 0)
             continue;
         const std::string middle = name.substr(before.size(), name.size() - before.size() - after.size());
-        if (middle.size() <= std::max(most, digits) && std::all_of(middle.begin(), middle.end(), [](unsigned char c) {
+        if (middle.size() <= std::min<size_t>(18, std::max(most, digits)) && std::all_of(middle.begin(), middle.end(), [](unsigned char c) {
                 return std::isdigit(c); }) && (middle.size() == digits || middle[0] != '0'))
             found[std::stol(middle)] = (fs::path(source).parent_path()/name).string();
     }

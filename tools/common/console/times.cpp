@@ -4,6 +4,7 @@
 #include "console/times.hpp"
 #include "console/failure.hpp"
 #include <opencv2/core.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
@@ -83,7 +84,8 @@ void requirePast(const std::string& text, const std::string& option)
 {
     const size_t DAY = 10;
     const double AHEAD = 14.*3600., CLOCKS = 300.;      // of the earliest day on earth; by which clocks differ
-    const double later = secondsOf(parseTime(text, option)) - secondsOf(timeOfNow());
+    const double now = std::max((double)std::time(nullptr), secondsOf(timeOfNow()));         // SOURCE_DATE_EPOCH may be long ago
+    const double later = secondsOf(parseTime(text, option)) - now;
     if (later > (text.size() == DAY ? AHEAD : CLOCKS))
         throw Failure(option + "=" + text + ": that is in the future, now is " + timeOfNow() + "; is the clock right?");
 }

@@ -194,9 +194,13 @@ void relateToFirst(ForeignRig& rig)
     }
     if (rig.Rs.empty())
         return;
+    const double EDITED = 1e-3;
     const Mat R = rig.Rs[0].clone(), T = rig.Ts[0].clone();
     for (size_t c = 0; c < rig.Rs.size(); c++)
     {
+        if (!checkRange(rig.Rs[c]) || !checkRange(rig.Ts[c]) || !(norm(rig.Rs[c]*rig.Rs[c].t(), Mat::eye(3, 3, CV_64F)) < EDITED))
+            throw Failure("of " + rig.format + " the place of camera " + std::to_string(c + 1) + " is no rotation and translation: was the "
+                          "file edited?");
         rig.Rs[c] = rig.Rs[c]*R.t();
         rig.Ts[c] = rig.Ts[c] - rig.Rs[c]*T;
         if (determinant(rig.Rs[c]) < 0)

@@ -238,12 +238,9 @@ struct PlaceNames
 const PlaceNames PLACES[] = {{"R", "T", false}, {"R", "t", false}, {"rotation_matrix", "translation_vector", false},
                              {"Rot", "Trans", false}, {"RotationOfCamera2", "TranslationOfCamera2", true}};
 
-//! The place of the second camera from the first, anywhere in the file.
-bool findPlace(const Json& json, int depth, Matx33d& R, Vec3d& T)
+//! What this map itself says.
+bool placeIn(const Json& json, Matx33d& R, Vec3d& T)
 {
-    const int DEEPEST = 3;
-    if (depth > DEEPEST)
-        return false;
     for (const PlaceNames& names : PLACES)
         if (json.has(names.R) && json.has(names.T))
         {
@@ -252,10 +249,35 @@ bool findPlace(const Json& json, int depth, Matx33d& R, Vec3d& T)
             R = names.forRows ? R.t() : R;
             return true;
         }
+    return false;
+}
+
+//! The place of the second camera from the first, anywhere in the file but with the first.
+bool findPlace(const Json& json, const Json* first, int depth, Matx33d& R, Vec3d& T)
+{
+    const int DEEPEST = 3;
+    if (depth > DEEPEST || &json == first)
+        return false;
+    if (placeIn(json, R, T))
+        return true;
     for (const std::string& name : json.names())
-        if (findPlace(json.at(name), depth + 1, R, T))
+        if (findPlace(json.at(name), first, depth + 1, R, T))
             return true;
     return false;
+}
+
+//! Each camera from one frame, in its own map.
+bool findPlaces(const Found& found, ForeignRig& rig)
+{
+    for (size_t c = 0; c < found.size(); c++)
+    {
+        Matx33d R;
+        Vec3d T;
+        if ((c > 0 && found[c].second == found[0].second) || !placeIn(*found[c].second, R, T))
+            return false;
+        rig.add(found[c].first, R, T);
+    }
+    return true;
 }
 
 //! Kalibr: each camera from the one before it.
@@ -311,7 +333,11 @@ ForeignRig readKeyedCameras(const Json& file, std::string& format)
     rig.format = format;
     Matx33d R;
     Vec3d T;
-    if (found.size() == 2 && findPlace(file, 0, R, T))
+    if (found.size() > 1 && findPlaces(found, rig))
+        return rig;
+    rig = ForeignRig();
+    rig.format = format;
+    if (found.size() == 2 && findPlace(file, found[0].second == found[1].second ? nullptr : found[0].second, 0, R, T))
     {
         rig.add(found[0].first, Matx33d::eye(), Vec3d());
         rig.add(found[1].first, R, T);

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 
 namespace tools {
 
@@ -59,6 +60,8 @@ std::vector<double> numbersOf(const Element& element)
     return numbers;
 }
 
+const double MOST = 1e5;        // numbers of a matrix: those of a camera are few, images may stand beside them
+
 Json matrixOf(const std::vector<double>& numbers, size_t rows, size_t columns)
 {
     if (numbers.size() < rows*columns)
@@ -81,7 +84,7 @@ Json structOf(ByteReader& in, int depth)
 {
     const std::vector<double> width = numbersOf(nextElement(in));
     const Element names = nextElement(in);
-    const size_t each = width.empty() || width[0] < 1 ? names.data.size() + 1 : (size_t)width[0];
+    const size_t each = !width.empty() && width[0] >= 1 && width[0] <= MOST ? (size_t)width[0] : names.data.size() + 1;
     Json json = Json::object();
     for (size_t at = 0; at + each <= names.data.size(); at += each)
     {
@@ -99,7 +102,8 @@ Json readVariable(const std::string& bytes, std::string& name, int depth)
         return nullptr;
     ByteReader in(bytes);
     const std::vector<double> flags = numbersOf(nextElement(in));
-    const int kind = flags.empty() ? 0 : (int)flags[0] & 0xff, OBJECT = 17;
+    const bool isKnown = !flags.empty() && flags[0] >= 0 && flags[0] <= std::numeric_limits<uint32_t>::max();
+    const int kind = isKnown ? (int)((uint32_t)flags[0] & 0xff) : 0, OBJECT = 17;
     if (kind == OBJECT)
     {
         name = nextElement(in).data;
@@ -107,7 +111,7 @@ Json readVariable(const std::string& bytes, std::string& name, int depth)
     }
     const std::vector<double> size = numbersOf(nextElement(in));
     name = nextElement(in).data;
-    const bool isFlat = size.size() == 2 && size[0] >= 0 && size[1] >= 0;
+    const bool isFlat = size.size() == 2 && size[0] >= 0 && size[0] <= MOST && size[1] >= 0 && size[1] <= MOST && size[0]*size[1] <= MOST;
     const int STRUCT = 2, FIRST_OF_NUMBERS = 6, LAST_OF_NUMBERS = 15;
     if (kind == STRUCT && isFlat && size[0] == 1 && size[1] == 1)
         return structOf(in, depth);

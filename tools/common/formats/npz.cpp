@@ -81,7 +81,12 @@ Json readNpy(const std::string& bytes)
         count *= shape[axis];
         if (count > bytes.size())
             throw Failure("an array is larger than the file: is it cut short?");
+        if (count == 0)
+            return nullptr;
     }
+    const size_t MOST = 100000;         // numbers of a camera are few; images may stand beside them
+    if (count > MOST)
+        return nullptr;
     std::vector<double> numbers;
     for (size_t i = 0; i < count; i++)
         numbers.push_back(numberOf(in, type));

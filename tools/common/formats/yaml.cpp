@@ -66,7 +66,10 @@ std::vector<Line> linesOf(const std::string& text)
         const bool goesOn = scan.brackets > 0;
         const std::string content = trimmed(scan.over(raw));
         if (!goesOn && (content.empty() || content.compare(0, 3, "---") == 0 || content == "..." || content[0] == '%'))
+        {
+            scan = Scan();      // brackets of what is skipped are none
             continue;
+        }
         if (goesOn)
             lines.back().text += " " + content;
         else

@@ -81,7 +81,10 @@ CalibrationImage shownOf(const Json& json)
 {
     CalibrationImage image;
     image.name = json.at("name").asText();
-    image.camera = (int)json.at("camera").asNumber() - 1;
+    const double camera = json.at("camera").asNumber();
+    if (!(camera >= 1. && camera <= MAX_CAMERAS))
+        throw Failure("an image is of no camera");
+    image.camera = (int)camera - 1;
     const std::vector<int> hundredths = json.at("hundredths_px").asWholes();
     for (size_t i = 0; i + 1 < hundredths.size(); i += 2)
         image.pixels.push_back(cv::Point2d(hundredths[i], hundredths[i + 1])/HUNDREDTHS);
@@ -181,6 +184,9 @@ CheckHistory historyOf(const Json& json)
     for (const Json& change : json.at("charts").items())
         history.changes.push_back({change.at("name").asText(), change.at("unit").asText(),
                                    change.at("axes").asTexts(), change.at("factor").asNumber()});
+    for (const ChartedChange& change : history.changes)
+        if (change.axes.empty() || change.axes.size() > 3)
+            throw Failure("the chart '" + change.name + "' has " + std::to_string(change.axes.size()) + " axes");
     for (const Json& check : json.at("checks").items())
     {
         history.checks.push_back(checkOf(check, history.changes));

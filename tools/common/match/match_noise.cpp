@@ -30,6 +30,7 @@ MatchNoise likeliestNoise(const std::vector<MatchResidual>& residuals)
     }
     if (count == 0)
         return {};
+    const double LEAST = 1e-12;         // px^2: exact pixels have no noise
     double a = 0.5*squares/count, b = 0.5*squares/scales2;
     for (int iteration = 0; iteration < ITERATIONS; iteration++)
     {
@@ -37,7 +38,7 @@ MatchNoise likeliestNoise(const std::vector<MatchResidual>& residuals)
         Vec2d g;
         for (const MatchResidual& r : residuals)
         {
-            const double v = a + b*r.scale2, weight = 1./(v*v);
+            const double v = std::max(LEAST, a + b*r.scale2), weight = 1./(v*v);
             const Vec2d row(1., r.scale2);
             H += r.count*weight*(row*row.t());
             g += weight*r.squares*row;
@@ -46,9 +47,9 @@ MatchNoise likeliestNoise(const std::vector<MatchResidual>& residuals)
         a = std::max(0., best[0]);
         b = std::max(0., best[1]);
         if (a <= 0.)
-            b = g[1]/H(1, 1);
+            b = std::max(0., g[1]/H(1, 1));
         else if (b <= 0.)
-            a = g[0]/H(0, 0);
+            a = std::max(0., g[0]/H(0, 0));
     }
     return {std::sqrt(a), std::sqrt(b)};
 }
@@ -74,7 +75,7 @@ double MatchNoise::stdOf(double scale) const { return std::hypot(floor, share*sc
 bool MatchResidual::isWithin(const MatchNoise& noise) const
 {
     const double variance = noise.floor*noise.floor + noise.share*noise.share*scale2;
-    return count > 0 && upperTailChiSquared(count, squares/variance) > RARE;
+    return count > 0 && (squares <= 0. || upperTailChiSquared(count, squares/variance) > RARE);
 }
 
 std::vector<MatchResidual> residualsOf(const ScaledMatches& scaled, const RigModel& rig)

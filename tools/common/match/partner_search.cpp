@@ -24,7 +24,7 @@ class Cells
 {
 public:
     Cells(const Features& features, Size size, double side)
-        : side_(side), columns_((int)(size.width/side) + 1), rows_((int)(size.height/side) + 1), lists_(columns_*rows_)
+        : side_(std::max(1., side)), columns_((int)(size.width/side_) + 1), rows_((int)(size.height/side_) + 1), lists_(columns_*rows_)
     {
         for (int i = 0; i < features.size(); i++)
         {
@@ -73,7 +73,7 @@ std::vector<int> nearCurve(const Mat& curve, const Features& features, const Cel
     for (int i = 0; i < curve.rows; i++)
     {
         const Point2d from = curve.at<Point2d>(std::max(0, i - 1)), to = curve.at<Point2d>(i);
-        const int steps = std::min(10000, (int)(norm(to - from)/search) + 1);
+        const int steps = (int)std::min(10000., norm(to - from)/search) + 1;
         for (int k = 0; k <= steps; k++)
             cells.visitNear(from + (double)k/steps*(to - from), [&](int feature) {
                 if (distanceToSegment(features.pixels[feature], from, to) <= search)

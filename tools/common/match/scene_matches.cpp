@@ -117,6 +117,9 @@ std::vector<Frames> framesOf(const std::vector<std::string>& sources, const Cali
     if (sources.size() != calibration.cameras.size())
         throw Failure(format("'%s' has %zu cameras, and images of %zu are given: one image, quoted glob or video of each, in their order",
                              filename.c_str(), calibration.cameras.size(), sources.size()));
+    for (size_t c = 0; c < calibration.cameras.size(); c++)
+        if (calibration.cameras[c].camera->imageSize().empty())
+            throw Failure(format("'%s' does not say image_width and image_height of camera %zu: add them", filename.c_str(), c + 1));
     std::vector<Frames> frames;
     for (const std::string& source : sources)
         frames.emplace_back(source);
@@ -184,6 +187,9 @@ SceneMatches SceneMatcher::goodOf(const ScaledMatches& all) const
     const std::vector<int> good = leaveOutWrong(chosen, result.noise);
     result.good = chosen.only(good);
     result.leftOut = result.chosen - (int)good.size();
+    if (result.good.size() < FEWEST || !(result.good.matches.usualStd() > 0.))
+        throw Failure(format("only %d of %d matches agree with each other: are the images of this rig, and of one moment each?",
+                             result.good.size(), result.chosen));
     result.wrongLeft = wrongOf(result);
     return result;
 }

@@ -217,11 +217,13 @@ EliminatedCluster eliminate(const Problem& problem, int index, const std::vector
     return result;
 }
 
+const int ROWS = 384, PANEL = 64;
+
 //! Subtracts W W^T of many clusters from the cameras' equations at a time, as products of large matrices are faster.
 class ProductsOfRows
 {
 public:
-    explicit ProductsOfRows(MatrixXd& equations) : equations_(equations), rows_(MatrixXd::Zero(MANY, equations.cols())), used_(0) {}
+    explicit ProductsOfRows(MatrixXd& equations) : equations_(equations), rows_(MatrixXd::Zero(ROWS, equations.cols())), used_(0) {}
 
     void subtract(const EliminatedCluster& cluster)
     {
@@ -253,7 +255,6 @@ public:
     }
 
 private:
-    static const int MANY = 384, PANEL = 64;
     MatrixXd& equations_;
     MatrixXd rows_;
     int used_;

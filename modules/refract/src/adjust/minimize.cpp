@@ -136,6 +136,7 @@ void Minimization::solve(TrustRegion& region, const std::vector<double*>& state)
     ceres::Problem::Options options;
     options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
     options.evaluation_callback = cost_.get();
+    std::vector<std::unique_ptr<ReducedCost::Group> > groups;       // they outlive it
     ceres::Problem problem(options);
     for (size_t k = 0; k < state.size(); k++)
     {
@@ -143,7 +144,6 @@ void Minimization::solve(TrustRegion& region, const std::vector<double*>& state)
         new (&block.values) Eigen::Map<Eigen::VectorXd>(state[k], block.values.size());
         addBlock(problem, block);
     }
-    std::vector<std::unique_ptr<ReducedCost::Group> > groups;
     for (int i = 0; i < cost_->groupCount(); i++)
     {
         groups.emplace_back(new ReducedCost::Group(*cost_, i));
