@@ -137,7 +137,7 @@ void checkTilt(const RigCalibration& c, int camera, Collected& f)
                          + (pairs ? "take more pairs, with the board all over the image"
                             : !c.data.hasDirect() ? "take more images, near and far, tilted to all sides, with the board all over the image"
                             : "take pairs (the board not moved between an image without and one with the window)"));
-        if (!pairs && c.data.hasDirect())
+        if (!pairs)
             f.cannotTell.push_back(of(c, camera) + "much about the tilt: no image without the window shows the board in the same "
                                    "place, so tilt and board poses are correlated. Pairs are worth 30 to 90 times more than "
                                    "such glass-only views");

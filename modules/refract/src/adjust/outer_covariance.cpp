@@ -43,8 +43,12 @@ MatrixXd OuterCovariance::of(const std::vector<int>& columns) const
             S(r, c) = byCameras_(columns[r], columns[c]);
     for (int c = cameras; c < count; c += SIZE)
         for (int r = c; r < count; r += SIZE)
-            S.block<SIZE, SIZE>(r, c) = ofPoses_((columns[r] - cameras_)/SIZE, (columns[c] - cameras_)/SIZE) +
-                half_.middleRows<SIZE>(columns[r]).lazyProduct(half_.middleRows<SIZE>(columns[c]).transpose());
+        {
+            S.block<SIZE, SIZE>(r, c) = ofPoses_((columns[r] - cameras_)/SIZE, (columns[c] - cameras_)/SIZE);
+            if (half_.cols() > 0)       // Eigen has no parts of nothing
+                S.block<SIZE, SIZE>(r, c) +=
+                    half_.middleRows<SIZE>(columns[r]).lazyProduct(half_.middleRows<SIZE>(columns[c]).transpose());
+        }
     S.triangularView<Eigen::StrictlyUpper>() = S.transpose();
     return S;
 }
