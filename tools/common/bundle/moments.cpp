@@ -23,15 +23,8 @@ const double APART_PX = 10.;            // less is the start's doing
 //! How far pixels are from the points that their rays give; px, of the middling point that this camera saw. NO_FIT: too few.
 double missOf(const BundleStart& start, const RigPixels& pixels, int camera)
 {
-    std::vector<Mat> Rs, Ts;
-    for (const RigidTransform& place : start.rig.extrinsics)
-    {
-        Rs.push_back(Mat(place.R));
-        Ts.push_back(Mat(place.T));
-    }
-    std::vector<Point3d> points;
     Mat errors;
-    triangulateRefractive(start.rig.cameras, Rs, Ts, pixels, points, noArray(), TRIANGULATE_MIDPOINT, 1., noArray(), noArray(), errors);
+    const std::vector<Point3d> points = triangulate(start.rig, pixels, TRIANGULATE_MIDPOINT, errors);
     std::vector<double> missed;
     for (size_t i = 0; i < points.size(); i++)
     {

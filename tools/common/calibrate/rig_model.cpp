@@ -122,6 +122,20 @@ Calibration firstPair(const Calibration& rig)
     return pair;
 }
 
+std::vector<Point3d> triangulate(const RigModel& rig, const std::vector<std::vector<Point2d>>& pixels, int method,
+                                 OutputArray reprojectionErrors)
+{
+    std::vector<Mat> Rs, Ts;
+    for (const RigidTransform& place : rig.extrinsics)
+    {
+        Rs.push_back(Mat(place.R));
+        Ts.push_back(Mat(place.T));
+    }
+    std::vector<Point3d> points;
+    triangulateRefractive(rig.cameras, Rs, Ts, pixels, points, noArray(), method, 1., noArray(), noArray(), reprojectionErrors);
+    return points;
+}
+
 Calibration calibrationOf(const RigModel& rig)
 {
     Calibration calibration;

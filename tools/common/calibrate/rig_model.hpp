@@ -58,6 +58,12 @@ void poseInCamera1(const RigModel& rig, int camera, cv::Vec3d& rvec, cv::Vec3d& 
 //! What a file says of them; each window by itself, as one that moved no longer is where the others are.
 RigModel modelOf(const Calibration& calibration);
 
+/** Points that the cameras of a rig see, in camera 1, by triangulateRefractive; NaN where there is none.
+@param pixels of each camera, one a point, NaN where it does not see it. @param method TRIANGULATE_OPTIMAL or TRIANGULATE_MIDPOINT
+@param reprojectionErrors px, a row a point, a column a camera */
+std::vector<cv::Point3d> triangulate(const RigModel& rig, const std::vector<std::vector<cv::Point2d>>& pixels,
+                                     int method = cv::refract::TRIANGULATE_OPTIMAL, cv::OutputArray reprojectionErrors = cv::noArray());
+
 //! Cameras 1 and 2 alone, with what the covariance says of them.
 Calibration firstPair(const Calibration& rig);
 

@@ -37,14 +37,7 @@ double scaleOf(const ScaledMatches& all, int point)
 //! Ranks of depths, from 0 to 1; those without one are in the middle.
 std::vector<double> ranksOfDepth(const Matches& matches, const RigModel& rig)
 {
-    std::vector<Mat> Rs, Ts;
-    for (const RigidTransform& place : rig.extrinsics)
-    {
-        Rs.push_back(Mat(place.R));
-        Ts.push_back(Mat(place.T));
-    }
-    std::vector<Point3d> points;
-    triangulateRefractive(rig.cameras, Rs, Ts, matches.pixels, points, noArray(), TRIANGULATE_MIDPOINT);
+    const std::vector<Point3d> points = triangulate(rig, matches.pixels, TRIANGULATE_MIDPOINT);
     std::vector<double> sorted;
     for (const Point3d& X : points)
         if (std::isfinite(X.z))

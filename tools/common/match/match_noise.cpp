@@ -81,15 +81,8 @@ bool MatchResidual::isWithin(const MatchNoise& noise) const
 std::vector<MatchResidual> residualsOf(const ScaledMatches& scaled, const RigModel& rig)
 {
     const Matches& matches = scaled.matches;
-    std::vector<Mat> Rs, Ts;
-    for (const RigidTransform& place : rig.extrinsics)
-    {
-        Rs.push_back(Mat(place.R));
-        Ts.push_back(Mat(place.T));
-    }
-    std::vector<Point3d> points;
     Mat errors;
-    triangulateRefractive(rig.cameras, Rs, Ts, matches.pixels, points, noArray(), 0, 1., noArray(), noArray(), errors);
+    triangulate(rig, matches.pixels, TRIANGULATE_OPTIMAL, errors);
     std::vector<MatchResidual> residuals;
     for (int i = 0; i < scaled.size(); i++)
     {

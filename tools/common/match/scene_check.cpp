@@ -12,14 +12,7 @@ namespace tools {
 
 ViewObservations observationsOf(const RigModel& rig, const Matches& matches)
 {
-    std::vector<Mat> Rs, Ts;
-    for (const RigidTransform& place : rig.extrinsics)
-    {
-        Rs.push_back(Mat(place.R));
-        Ts.push_back(Mat(place.T));
-    }
-    std::vector<Point3d> points;
-    triangulateRefractive(rig.cameras, Rs, Ts, matches.pixels, points);
+    const std::vector<Point3d> points = triangulate(rig, matches.pixels);
     ViewObservations scene;
     scene.isScene = true;
     std::vector<int> indices(points.size(), -1);
