@@ -23,6 +23,18 @@ bool isBeyondWindows(const Calibration& calibration, double z)
     return std::isfinite(X[0][2]);
 }
 
+std::vector<cv::Point3d> pointsAtDepth(const cv::Ptr<cv::refract::RefractiveCamera>& camera, double z, int steps)
+{
+    const cv::Size size = camera->imageSize();
+    std::vector<Point2d> pixels;
+    for (int i = 0; i <= steps; i++)
+        for (int j = 0; j <= steps; j++)
+            pixels.push_back(Point2d((size.width - 1)*i/(double)steps, (size.height - 1)*j/(double)steps));
+    std::vector<cv::Point3d> points;
+    cv::refract::refractivePointsOnPlane(pixels, points, camera, cv::Vec4d(0, 0, 1, z));
+    return points;
+}
+
 cv::Vec2d givenDepthRange(const std::string& text, const Calibration& calibration)
 {
     const cv::Vec2d range = parseDepthRange(text, "--depth");

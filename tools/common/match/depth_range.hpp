@@ -18,6 +18,9 @@ cv::Vec2d givenDepthRange(const std::string& text, const Calibration& calibratio
 //! Half as far as the calibrated volume, to half as far again beyond it; throws Failure that asks for --depth if the file has none.
 cv::Vec2d calibratedDepthRange(const Calibration& calibration, const std::string& filename);
 
+//! What a camera sees on a plane of its own frame, in steps + 1 rows and columns all over its image; NaN where it does not see the plane.
+std::vector<cv::Point3d> pointsAtDepth(const cv::Ptr<cv::refract::RefractiveCamera>& camera, double z, int steps);
+
 } // namespace tools
 
 #endif // REFRACT_TOOLS_DEPTH_RANGE_HPP

@@ -3,6 +3,7 @@
 
 #include "match/moved_rig.hpp"
 #include "assess/change.hpp"
+#include "match/depth_range.hpp"
 #include "math/dense.hpp"
 #include "measure/view_derivatives.hpp"
 
@@ -52,17 +53,12 @@ std::vector<Point3d> pointsInBoth(const RigModel& rig, int first, int second, co
 {
     const int STEPS = 6, DEPTHS = 3;
     const double FAR = 100.;            // times the near end: farther points look as those
-    const Size size = rig.cameras[0]->imageSize();
-    std::vector<Point2d> pixels;
-    for (int i = 0; i <= STEPS; i++)
-        for (int j = 0; j <= STEPS; j++)
-            pixels.push_back(Point2d((size.width - 1)*i/(double)STEPS, (size.height - 1)*j/(double)STEPS));
     std::vector<Point3d> both;
     for (int k = 0; k < DEPTHS; k++)
     {
         const double far = std::min(depth[1], FAR*depth[0]), share = k/(DEPTHS - 1.);
-        std::vector<Point3d> points, kept;
-        refractivePointsOnPlane(pixels, points, rig.cameras[0], Vec4d(0, 0, 1, 1./((1. - share)/depth[0] + share/far)));
+        const std::vector<Point3d> points = pointsAtDepth(rig.cameras[0], 1./((1. - share)/depth[0] + share/far), STEPS);
+        std::vector<Point3d> kept;
         std::copy_if(points.begin(), points.end(), std::back_inserter(kept), [](const Point3d& X) { return X.x == X.x; });
         const std::vector<int> seen1 = pointsInImage(rig, kept, Vec3d(), Vec3d(), first, true).points;
         const std::vector<int> seen2 = pointsInImage(rig, kept, Vec3d(), Vec3d(), second, true).points;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "match/partner_search.hpp"
+#include "match/depth_range.hpp"
 
 #include <opencv2/core/hal/hal.hpp>
 #include <algorithm>
@@ -114,23 +115,14 @@ Vec2d depthInCamera(const RigModel& rig, int c, const Vec2d& depth)
         return depth;
     const int STEPS = 4;
     const double FAR = 1e3;             // times the near end: what is beyond is endless
-    const Size size = rig.cameras[0]->imageSize();
-    std::vector<Point2d> pixels;
-    for (int i = 0; i <= STEPS; i++)
-        for (int j = 0; j <= STEPS; j++)
-            pixels.push_back(Point2d((size.width - 1)*i/(double)STEPS, (size.height - 1)*j/(double)STEPS));
     Vec2d range(DBL_MAX, 0.);
     for (double z : {depth[0], std::min(depth[1], FAR*depth[0])})
-    {
-        std::vector<Point3d> points;
-        refractivePointsOnPlane(pixels, points, rig.cameras[0], Vec4d(0, 0, 1, z));
-        for (const Point3d& X : points)
+        for (const Point3d& X : pointsAtDepth(rig.cameras[0], z, STEPS))
         {
             const double there = (rig.extrinsics[c]*Vec3d(X))[2];
             if (there > 0.)             // false for NaN
                 range = Vec2d(std::min(range[0], there), std::max(range[1], there));
         }
-    }
     if (!(range[1] > 0.))
         return Vec2d(depth[0], DBL_MAX);
     return Vec2d(range[0], depth[1] > FAR*depth[0] ? DBL_MAX : range[1]);
