@@ -22,6 +22,14 @@ inline std::string saved(const TemporaryFolder& folder, const std::string& name,
     return folder/name;
 }
 
+//! The cameras of a text.
+inline tools::ForeignRig rigOf(const TemporaryFolder& folder, const std::string& text, const std::string& name = "file")
+{
+    const auto rig = tools::readForeignRig(saved(folder, name, text));
+    REQUIRE(rig);
+    return *rig;
+}
+
 //! x, y in the plane z = 1 -> the same, distorted.
 typedef std::function<cv::Point2d(double x, double y)> Distortion;
 

@@ -6,16 +6,8 @@
 #include "paths.hpp"
 
 using tools::ForeignRig;
-using tools::readForeignRig;
 
 namespace {
-
-ForeignRig read(const TemporaryFolder& f, const std::string& bytes)
-{
-    const auto rig = readForeignRig(saved(f, "file", bytes));
-    REQUIRE(rig);
-    return *rig;
-}
 
 //! Of deflate: bytes as they are.
 std::string storedBlock(const std::string& bytes)
@@ -111,8 +103,8 @@ TEST_CASE("NumPy's archives are read, stored and compressed, in both orders of m
     TemporaryFolder f;
     for (uint16_t method : {0, 8})
     {
-        requireSame(read(f, npz({{"mtx", npy("<f8", false, "3, 3", raw(K))}, {"dist", npy("<f8", false, "1, 5", raw(D))}}, method)));
-        requireSame(read(f, npz({{"rvecs", npy("|O", false, "2,", "pickled")}, {"camera_matrix", npy("<f8", true, "3, 3", raw(K_COLUMNS))},
+        requireSame(rigOf(f, npz({{"mtx", npy("<f8", false, "3, 3", raw(K))}, {"dist", npy("<f8", false, "1, 5", raw(D))}}, method)));
+        requireSame(rigOf(f, npz({{"rvecs", npy("|O", false, "2,", "pickled")}, {"camera_matrix", npy("<f8", true, "3, 3", raw(K_COLUMNS))},
                                  {"D", npy("<f8", false, "5,", raw(D))}, {"width", npy("<i8", false, "", raw((int64_t)1280))},
                                  {"height", npy("<i4", false, "", raw((int32_t)960))}}, method)));
     }
@@ -133,12 +125,12 @@ TEST_CASE("Bouguet's Calib_Results is read, of one camera and of two", "[foreign
     for (bool smaller : {false, true})
     {
         const std::string one = variable("nx", 1, 1, {1280}) + variable("ny", 1, 1, {960});
-        const ForeignRig rig = read(f, mat(smaller ? compressed(variable("fc", 2, 1, {1210.5, 1190.25})) + compressed(variable("cc", 2, 1,
+        const ForeignRig rig = rigOf(f, mat(smaller ? compressed(variable("fc", 2, 1, {1210.5, 1190.25})) + compressed(variable("cc", 2, 1,
                                     {639.25, 481.5})) + compressed(variable("kc", 5, 1, D)) + one : camera("", 1210.5) + one));
         requireSame(rig);
         CHECK(rig.cameras[0]->imageSize() == cv::Size(1280, 960));
     }
-    const ForeignRig pair = read(f, mat(camera("_left", 1210.5) + camera("_right", 1000)
+    const ForeignRig pair = rigOf(f, mat(camera("_left", 1210.5) + camera("_right", 1000)
                                         + variable("R", 3, 3, {0.8, 0, -0.6, 0, 1, 0, 0.6, 0, 0.8}) + variable("T", 3, 1, {-60, 1, 2})));
     REQUIRE(pair.cameras.size() == 2);
     requireSame(pair);
@@ -156,10 +148,10 @@ TEST_CASE("MATLAB's parameters are read as structs: pixels from 1, matrices for 
     const std::string members = variable("", 1, 3, {-0.11, 0.07, 0.013}) + variable("", 1, 2, {0.001, -0.002}) + variable("", 1, 2, {960,
                                                                                                                                      1280})
         + variable("", 3, 3, K);
-    const ForeignRig rig = read(f, mat(structure("p", names, members)));
+    const ForeignRig rig = rigOf(f, mat(structure("p", names, members)));
     requireSame(rig, 1.);
     CHECK(rig.cameras[0]->imageSize() == cv::Size(1280, 960));
-    const ForeignRig pair = read(f, mat(structure("stereo", {"CameraParameters1", "CameraParameters2", "RotationOfCamera2",
+    const ForeignRig pair = rigOf(f, mat(structure("stereo", {"CameraParameters1", "CameraParameters2", "RotationOfCamera2",
                                                              "TranslationOfCamera2"},
         structure("", names, members) + structure("", {"RadialDistortion", "TangentialDistortion", "K"}, variable("", 1, 2, {0, 0})
             + variable("", 1, 2, {0, 0}) + variable("", 3, 3, {900, 0, 0, 0, 901, 0, 320, 240, 1}))
@@ -213,7 +205,7 @@ TEST_CASE("COLMAP's cameras are read, as text and as bytes; what OpenCV has no e
     }
     for (const std::string& bytes : {text, binary})
     {
-        const ForeignRig rig = read(f, bytes);
+        const ForeignRig rig = rigOf(f, bytes);
         REQUIRE(rig.cameras.size() == models.size());
         for (size_t i = 0; i < models.size(); i++)      // a pixel's corner is (0, 0) there, and its centre here
             requireLens(rig.cameras[i], models[i].distortion, 1000, models[i].fy, 640 - 0.5, 480 - 0.5);

@@ -11,13 +11,6 @@ using tools::readForeignRig;
 
 namespace {
 
-ForeignRig read(const TemporaryFolder& f, const std::string& text, const std::string& name = "file")
-{
-    const auto rig = readForeignRig(saved(f, name, text));
-    REQUIRE(rig);
-    return *rig;
-}
-
 //! Directions all over an image, by x and y in the plane z = 1.
 std::vector<Point2d> directions()
 {
@@ -76,13 +69,13 @@ TEST_CASE("Calibmar's flat and dome ports are read, and those of COLMAP for came
     };
     const std::string flatPort = cv::format("%.17g, %.17g, %.17g, 20, 10, 1.0003, 1.52, 1.333", n[0], n[1], n[2]),
                       domePort = "1, -2, 3, 50, 7, 1.0003, 1.49, 1.333", size = "width: 1280\nheight: 960\n";
-    requireCalibmar(read(f, LENS + "non_svp_model: FLATPORT\nnon_svp_parameters: [" + flatPort + "]\n" + size), flat);
-    requireCalibmar(read(f, LENS + "non_svp_model: DOMEPORT\nnon_svp_parameters: [" + domePort + "]\n" + size), dome);
-    requireCalibmar(read(f, LENS + size + "non_svp_camera:\n  type: flatport\n  parameters: [" + flatPort + "]\n"), flat);
-    requireCalibmar(read(f, LENS + "non_svp_model: NONE\nnon_svp_parameters: []\n" + size), [](Vec3d&, Vec3d&) {});
+    requireCalibmar(rigOf(f, LENS + "non_svp_model: FLATPORT\nnon_svp_parameters: [" + flatPort + "]\n" + size), flat);
+    requireCalibmar(rigOf(f, LENS + "non_svp_model: DOMEPORT\nnon_svp_parameters: [" + domePort + "]\n" + size), dome);
+    requireCalibmar(rigOf(f, LENS + size + "non_svp_camera:\n  type: flatport\n  parameters: [" + flatPort + "]\n"), flat);
+    requireCalibmar(rigOf(f, LENS + "non_svp_model: NONE\nnon_svp_parameters: []\n" + size), [](Vec3d&, Vec3d&) {});
     std::string words = flatPort;
     words.erase(std::remove(words.begin(), words.end(), ','), words.end());
-    requireCalibmar(read(f, "1 OPENCV 1280 960 1000 900 640 480 -0.1 0.05 0.001 -0.002 FLATPORT " + words + "\n"), flat);
+    requireCalibmar(rigOf(f, "1 OPENCV 1280 960 1000 900 640 480 -0.1 0.05 0.001 -0.002 FLATPORT " + words + "\n"), flat);
     CHECK_THAT(refusal(saved(f, "x", LENS + "non_svp_model: FLATPORT\nnon_svp_parameters: [0, 0, 1]\n")),
                Catch::Contains("looks like Calibmar's calibration, but a port has 8 parameters, here are 3"));
     CHECK_THAT(refusal(saved(f, "x", LENS + "non_svp_model: CYLINDER\nnon_svp_parameters: [0]\n")),
@@ -119,9 +112,9 @@ TEST_CASE("OpenPTV's cameras are read, with their glass", "[foreign]")
         }
     };
     saved(f, "cam1.tif.addpar", "0 0 0 0 0 1.001 0\n");
-    requireSeen(read(f, ori(xh, yh), "cam1.tif.ori"), xh, yh, 1.001, [](double x, double y) { return Point2d(x, y); });
+    requireSeen(rigOf(f, ori(xh, yh), "cam1.tif.ori"), xh, yh, 1.001, [](double x, double y) { return Point2d(x, y); });
     saved(f, "cam1.tif.addpar", "1e-4 -2e-7 3e-10 0 2e-5 1.001 0\n");
-    requireSeen(read(f, ori(0, 0), "cam1.tif.ori"), 0, 0, 1.001, [](double x, double y) {
+    requireSeen(rigOf(f, ori(0, 0), "cam1.tif.ori"), 0, 0, 1.001, [](double x, double y) {
         const double r = std::hypot(x, y), bend = 1e-4*r*r - 2e-7*std::pow(r, 4) + 3e-10*std::pow(r, 6), p2 = 2e-5;
         return Point2d(x + x*bend + 2*p2*x*y, y + y*bend + p2*(r*r + 2*y*y));
     });
@@ -173,7 +166,7 @@ TEST_CASE("OpenLPT's cameras are read, behind a plate and not, also where y poin
                                    "%.17g,%.17g,%.17g\n", face[0], face[1], face[2], n[0], n[1], n[2])
                       + "# Refractive Index Array: \n1.33,1.49,1.0\n# Width of the Refractive Plate: (mm)\n12.7\n"
                         "# Projection Tolerance: \n1e-8\n";
-            const ForeignRig rig = read(f, text);
+            const ForeignRig rig = rigOf(f, text);
             CHECK(rig.cameras.at(0)->imageSize() == cv::Size(1280, 1024));
             const double up = fy < 0 ? -1 : 1;
             for (const Point2d& at : directions())

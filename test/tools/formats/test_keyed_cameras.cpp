@@ -10,14 +10,6 @@ using tools::readForeignRig;
 
 namespace {
 
-//! The cameras of a text.
-ForeignRig read(const TemporaryFolder& f, const std::string& text, const std::string& name = "file")
-{
-    const auto rig = readForeignRig(saved(f, name, text));
-    REQUIRE(rig);
-    return *rig;
-}
-
 const Distortion BROWN = brown(-0.11, 0.07, 0.001, -0.002, 0.013);
 const std::string K = "[[1210.5, 0, 639.25], [0, 1190.25, 481.5], [0, 0, 1]]", D = "[[-0.11, 0.07, 0.001, -0.002, 0.013]]";
 
@@ -30,15 +22,15 @@ TEST_CASE("A camera matrix and coefficients are read by any of their usual names
     TemporaryFolder f;
     for (const char* matrix : {"camera_matrix", "K", "mtx", "cameraMatrix"})
         for (const char* distortion : {"distortion_coefficients", "dist", "D", "distCoeffs", "dist_coeff"})
-            requireSame(read(f, std::string("{\"") + matrix + "\": " + K + ", \"" + distortion + "\": " + D + "}"));
-    requireSame(read(f, "mtx: " + K + "\ndist: " + D + "\n"));
-    requireSame(read(f, "# made by hand\nmtx:\n- - 1210.5\n  - 0.0\n  - 639.25\n- - 0.0\n  - 1190.25\n  - 481.5\n- [0, 0, 1]\n"
+            requireSame(rigOf(f, std::string("{\"") + matrix + "\": " + K + ", \"" + distortion + "\": " + D + "}"));
+    requireSame(rigOf(f, "mtx: " + K + "\ndist: " + D + "\n"));
+    requireSame(rigOf(f, "# made by hand\nmtx:\n- - 1210.5\n  - 0.0\n  - 639.25\n- - 0.0\n  - 1190.25\n  - 481.5\n- [0, 0, 1]\n"
                         "dist:\n  - -0.11\n  - 0.07   # k2\n  - 1e-3\n  - -0.002\n  - 0.013\n"));
-    const ForeignRig below = read(f, "{\"cameras\": [{\"name\": \"a\", \"K\": " + K + ", \"dist\": " + D
+    const ForeignRig below = rigOf(f, "{\"cameras\": [{\"name\": \"a\", \"K\": " + K + ", \"dist\": " + D
                                   + ", \"width\": 1280, \"height\": 960}]}");
     requireSame(below);
     CHECK(below.cameras[0]->imageSize() == cv::Size(1280, 960));
-    requireLens(read(f, "distortion_model: fisheye\nK: " + K + "\nD: [0.02, -0.01, 0.003, 0.001]\n").cameras[0],
+    requireLens(rigOf(f, "distortion_model: fisheye\nK: " + K + "\nD: [0.02, -0.01, 0.003, 0.001]\n").cameras[0],
                 equidistant(0.02, -0.01, 0.003, 0.001), 1210.5, 1190.25, 639.25, 481.5);
 }
 
@@ -73,7 +65,7 @@ TEST_CASE("Cameras that each say where they are in one frame are related to the 
     const std::string I = "[[1, 0, 0], [0, 1, 0], [0, 0, 1]]", turned = "[[0.8, 0, 0.6], [0, 1, 0], [-0.6, 0, 0.8]]";
     for (const std::string first : {"[0, 0, 0]", "[10, 0, 0]"})
     {
-        const ForeignRig rig = read(f, "{\"cam0\": " + camera(I, first) + ", \"cam1\": " + camera(turned, "[-60, 1, 2]") + "}");
+        const ForeignRig rig = rigOf(f, "{\"cam0\": " + camera(I, first) + ", \"cam1\": " + camera(turned, "[-60, 1, 2]") + "}");
         REQUIRE(rig.cameras.size() == 2);
         const cv::Mat R = (cv::Mat_<double>(3, 3) << 0.8, 0, 0.6, 0, 1, 0, -0.6, 0, 0.8);
         const double shift = first == "[0, 0, 0]" ? 0 : 10;
@@ -103,15 +95,15 @@ TEST_CASE("ROS's camera_info is read", "[foreign]")
         + block("camera_matrix", 3, 3, "1210.5, 0, 639.25, 0., 1190.25, 481.5, 0,\n         0, 1"), tail = block("rectification_matrix",
                                                                                                                  3, 3,
         "1, 0, 0, 0, 1, 0, 0, 0, 1") + block("projection_matrix", 3, 4, "1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0");
-    const ForeignRig plumb = read(f, head + "distortion_model: plumb_bob\n"
+    const ForeignRig plumb = rigOf(f, head + "distortion_model: plumb_bob\n"
                                   + block("distortion_coefficients", 1, 5, "-0.11, 0.07, 0.001, -0.002, 0.013") + tail);
     requireSame(plumb);
     CHECK(plumb.format == "ROS's camera_info");
     CHECK(plumb.cameras[0]->imageSize() == cv::Size(1280, 960));
-    requireLens(read(f, head + "distortion_model: rational_polynomial\n"
+    requireLens(rigOf(f, head + "distortion_model: rational_polynomial\n"
                      + block("distortion_coefficients", 1, 8, "-0.11, 0.07, 0.001, -0.002, 0.013, 0.1, 0.02, 0.003") + tail).cameras[0],
                 brown(-0.11, 0.07, 0.001, -0.002, 0.013, 0.1, 0.02, 0.003), 1210.5, 1190.25, 639.25, 481.5);
-    requireLens(read(f, head + "distortion_model: equidistant\n" + block("distortion_coefficients", 1, 4, "0.02, -0.01, 0.003, 0.001")
+    requireLens(rigOf(f, head + "distortion_model: equidistant\n" + block("distortion_coefficients", 1, 4, "0.02, -0.01, 0.003, 0.001")
                      + tail).cameras[0], equidistant(0.02, -0.01, 0.003, 0.001), 1210.5, 1190.25, 639.25, 481.5);
     CHECK(refusal(saved(f, "x", head + "distortion_model: division\n" + block("distortion_coefficients", 1, 1, "0.1")))
           == "'" + f/"x" + "' looks like ROS's camera_info, but its distortion_model 'division' has no equal among OpenCV's");
@@ -128,7 +120,7 @@ TEST_CASE("Kalibr's camchain is read, each camera from the one before it", "[for
         "  intrinsics: [900, 901, 320, 240]\n  resolution: [640, 480]\n";
     std::string third = second;
     third.replace(0, 4, "cam2");
-    const ForeignRig rig = read(f, first + second + third);
+    const ForeignRig rig = rigOf(f, first + second + third);
     REQUIRE(rig.cameras.size() == 3);
     requireLens(rig.cameras[0], brown(-0.11, 0.07, 0.001, -0.002), 1210.5, 1190.25, 639.25, 481.5);
     requireLens(rig.cameras[1], equidistant(0.02, -0.01, 0.003, 0.001), 900, 901, 320, 240);
@@ -149,7 +141,7 @@ TEST_CASE("DepthAI's calibration is read", "[foreign]")
     TemporaryFolder f;
     const std::string camera = "{\"cameraType\": 0, \"distortionCoeff\": [-0.11, 0.07, 0.001, -0.002, 0.013, 0.1, 0.02, 0.003, 0,0,0,0,0,0]"
         ", \"height\": 960, \"width\": 1280, \"intrinsicMatrix\": " + K + "}";
-    const ForeignRig rig = read(f, "{\"boardName\": \"x\", \"cameraData\": [[0, " + camera + "], [1, " + camera + "]]}");
+    const ForeignRig rig = rigOf(f, "{\"boardName\": \"x\", \"cameraData\": [[0, " + camera + "], [1, " + camera + "]]}");
     REQUIRE(rig.cameras.size() == 2);
     CHECK(rig.Rs.empty());
     requireLens(rig.cameras[1], brown(-0.11, 0.07, 0.001, -0.002, 0.013, 0.1, 0.02, 0.003), 1210.5, 1190.25, 639.25, 481.5);
