@@ -1,0 +1,22 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#ifndef REFRACT_TOOLS_CHECK_POWER_HPP
+#define REFRACT_TOOLS_CHECK_POWER_HPP
+
+#include "assess/rig_check.hpp"
+#include "check/check_options.hpp"
+
+/* Whether the images of a check can tell. */
+namespace tools {
+
+/** Empty, or why "unchanged" cannot be said: with too low a probability the images would show what --detect asks for.
+@param input that was tested */
+std::string whyNot(const CheckResult& result, const CheckOptions& options, const CheckInput& input);
+
+//! In a word or two. @param why of whyNot
+std::string verdictOf(const CheckResult& result, const std::string& why);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_CHECK_POWER_HPP

@@ -1,0 +1,94 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#include "check/kept_check.hpp"
+#include "calibrate/parameter_columns.hpp"
+#include "console/file_output.hpp"
+#include "console/numbers.hpp"
+#include "console/table.hpp"
+#include "history/history_page.hpp"
+#include "measure/measurement.hpp"
+#include "report/plot.hpp"
+#include <iostream>
+#include <map>
+
+using namespace cv::refract;
+
+namespace tools {
+namespace {
+
+// Of an unmoved target's images no two have the same noise; a hundredth of a pixel is kept of each.
+const double IDENTICAL = 0.008;
+
+} // namespace
+
+KeptCheck::KeptCheck(const CheckOptions& options, const Calibration& calibration)
+    : options_(options), calibration_(calibration), lock_(options.history), history_(readHistory(options.history))
+{
+    Plot::checkAvailable("--history");
+    requireSameRig(history_, options.history, calibration, options.calibration);
+    covariance_ = toEigen(withWedges(checkInputOf(calibration, options.calibration, options.sigma)).covariance);
+    if (!options.time.empty())
+        requirePast(options.time, "--time");
+    time_ = options.time.empty() ? timeOfNow() : parseTime(options.time, "--time");
+}
+
+void KeptCheck::requireNewImages(const CheckImages& images)
+{
+    const double tolerance = options_.fixedTarget ? IDENTICAL : sameImageTolerance(pixelSigmaOf(calibration_));
+    record_ = recordOf({{}, VectorXd(), MatrixXd(), MatrixXd()}, images.files, time_, history_, images.shown);
+    requireNotCalibrated(record_, calibration_, tolerance);
+    requireNew(history_, options_.history, record_, tolerance);
+}
+
+void KeptCheck::add(const CheckResult& check, const CheckInput& input, const CheckImages& images, const std::string& verdict)
+{
+    record_ = recordOf(check.charted, images.files, time_, history_, images.shown);
+    record_.verdict = verdict;
+    record_.sigma = check.sigma;
+    record_.dof = check.dof;
+    if (options_.conditions.isSaid())     // the day's index is no error of the calibration
+        for (int c = 0; c < (int)input.rig.cameras.size(); c++)
+            record_.byParameters.col(columnsOf(withWedges(input).rig, c).outerIndex).setZero();
+    history_.checks.push_back(record_);
+    std::map<std::string, double> drifts;
+    for (const WindowCheck& window : check.windows)
+        drifts[window.chart] = options_.drift*(window.lengthPerDegree > 0. ? window.lengthPerDegree : 1.);
+    result_ = chartHistory(history_, covariance_, (1. - SHARE_OF_CHECK)*options_.falseAlarm, drifts);
+}
+
+void KeptCheck::write(const std::string& verdict, bool isGood) const
+{
+    const std::string page = historyPage(history_, result_, covariance_, {options_.calibration, options_.falseAlarm, verdict, isGood});
+    writeText(options_.pageFile(), page);
+    writeHistory(options_.history, history_);
+}
+
+void KeptCheck::print() const
+{
+    const std::vector<std::string> beyond = result_.chartsBeyond(history_);
+    std::cout << format("\nHistory of %zu check%s since %s: ", history_.checks.size(), history_.checks.size() == 1 ? "" : "s",
+                        history_.checks[0].time.substr(0, 10).c_str())
+              << (beyond.empty() ? "all charts are within their limits" : "beyond the limit: " + listed(beyond)) << '\n';
+    if (!result_.causes.empty())
+        std::cout << "What explains all checks best: " << causesIn(result_, history_) << '\n';
+    if (!result_.mainTrend(history_).empty())
+        std::cout << "Trend of " << result_.mainTrend(history_) << '\n';
+    for (const FoundDrift& found : result_.found)
+        std::cout << foundText(found, history_, result_.interval) << '\n';
+    std::cout << "Charts: " << options_.pageFile() << '\n';
+}
+
+Json KeptCheck::json() const
+{
+    Json found = Json::array();
+    for (const FoundDrift& f : result_.found)
+        found.append({{"name", history_.changes[f.change].name}, {"drift_deg_per_month", options_.drift}, {"drift_per_month", f.perMonth},
+                      {"checks", f.checks}});
+    return {{"checks", history_.checks.size()}, {"broken", history_.broken}, {"alarm", isAlarm()},
+            {"beyond", result_.chartsBeyond(history_)},
+            {"causes", causesIn(result_, history_)}, {"t2", result_.points.back().t2}, {"t2_limit", result_.points.back().limitT2},
+            {"ewma_limit", result_.points.back().limit}, {"found", found}};
+}
+
+} // namespace tools

@@ -1,0 +1,51 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#ifndef REFRACT_TOOLS_KEPT_CHECK_HPP
+#define REFRACT_TOOLS_KEPT_CHECK_HPP
+
+#include "check/check_images.hpp"
+#include "console/json.hpp"
+#include "history/check_history.hpp"
+#include "history/history_lock.hpp"
+#include "history/rig_history.hpp"
+
+/* A check among all others of its calibration (--history). */
+namespace tools {
+
+class KeptCheck
+{
+public:
+    //! Refuses a history of another rig. @param calibration as it was read
+    KeptCheck(const CheckOptions& options, const Calibration& calibration);
+
+    //! What of the history is not as it was written.
+    const std::vector<std::string>& broken() const { return history_.broken; }
+
+    //! Refuses images that calibrated, or that an earlier check had.
+    void requireNewImages(const CheckImages& images);
+
+    //! @param input of the check
+    void add(const CheckResult& check, const CheckInput& input, const CheckImages& images, const std::string& verdict);
+
+    bool isAlarm() const { return result_.isAlarm(); }
+
+    //! @param verdict of all
+    void write(const std::string& verdict, bool isGood) const;
+    void print() const;
+    Json json() const;
+
+private:
+    const CheckOptions& options_;
+    const Calibration& calibration_;
+    HistoryLock lock_;
+    CheckHistory history_;
+    MatrixXd covariance_;
+    std::string time_;
+    CheckRecord record_;
+    HistoryResult result_;
+};
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_KEPT_CHECK_HPP
