@@ -3,7 +3,6 @@
 
 #include "console/cli.hpp"
 #include "console/exif.hpp"
-#include "console/leftovers.hpp"
 
 #include <opencv2/core/utils/logger.hpp>
 #include <algorithm>
@@ -74,7 +73,6 @@ int runTool(int argc, char** argv, const std::string& manual, const std::functio
 {
     // What goes wrong is said once, in the exception; OpenCV's log would repeat it in its own words.
     cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
-    removeLeftoversOnSignals();
     Command command(argc, argv, manual);
     const auto sayRotated = [&command] {
         const std::string turned = takeRotationNotice();

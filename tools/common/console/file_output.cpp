@@ -116,7 +116,6 @@ OutputFile::OutputFile(const std::string& path, const std::string& extension) : 
     temporary_ = ((target_.empty() ? temporaryFolder() : folderOf(name))
                   / ("." + name.stem().string() + ".part" + std::to_string(getpid())
                      + (name.has_extension() ? name.extension().string() : extension))).string();
-    leftover_ = std::make_unique<Leftover>(temporary_);
 }
 
 OutputFile::~OutputFile()

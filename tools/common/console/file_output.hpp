@@ -4,20 +4,17 @@
 #ifndef REFRACT_TOOLS_FILE_OUTPUT_HPP
 #define REFRACT_TOOLS_FILE_OUTPUT_HPP
 
-#include "console/leftovers.hpp"
 #include <opencv2/core.hpp>
 #include <filesystem>
 #include <functional>
-#include <memory>
 #include <string>
 #include <vector>
 
 namespace tools {
 
-/* A file that is complete or absent: written under another name in the same folder, renamed at the end, removed if the work fails or a
-signal ends the tool. The temporary name keeps the extension, by which cv::imwrite and cv::FileStorage choose the format. A link stays
-one: what it leads to is replaced. What is no regular file (a device, a pipe) stays what it is: the bytes go into it at the
-end. */
+/* A file that is complete or absent: written under another name in the same folder, renamed at the end, removed if the work fails.
+The temporary name keeps the extension, by which cv::imwrite and cv::FileStorage choose the format. A link stays one: what it leads to
+is replaced. What is no regular file (a device, a pipe) stays what it is: the bytes go into it at the end. */
 class OutputFile
 {
 public:
@@ -31,7 +28,6 @@ public:
     void commit();                                                  //!< throws Failure if it cannot
 private:
     std::string path_, target_, temporary_;     //!< target: where links lead to; empty: no regular file
-    std::unique_ptr<Leftover> leftover_;
     bool committed_ = false;
 };
 

@@ -20,10 +20,7 @@ HistoryLock::HistoryLock(const std::string& history) : file_(history + ".lock")
     for (int i = 0; i < SECONDS*TRIES_A_SECOND; i++)
     {
         if (tryOnce())
-        {
-            leftover_ = std::make_unique<Leftover>(file_);
             return;
-        }
         std::this_thread::sleep_for(std::chrono::milliseconds(1000/TRIES_A_SECOND));
     }
     throw Failure("another check has kept '" + history + "' for " + std::to_string(SECONDS/60) + " minutes: wait for it, or end it");

@@ -4,8 +4,6 @@
 #ifndef REFRACT_TOOLS_HISTORY_LOCK_HPP
 #define REFRACT_TOOLS_HISTORY_LOCK_HPP
 
-#include "console/leftovers.hpp"
-#include <memory>
 #include <string>
 
 namespace tools {
@@ -24,7 +22,6 @@ private:
     bool tryOnce();
 
     std::string file_;
-    std::unique_ptr<Leftover> leftover_;
     int descriptor_ = -1;
 };
 

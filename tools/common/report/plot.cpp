@@ -4,13 +4,11 @@
 #include "report/plot.hpp"
 #include "console/failure.hpp"
 #include "console/file_output.hpp"
-#include "console/leftovers.hpp"
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <memory>
 #include <unistd.h>
 
 namespace tools {
@@ -27,8 +25,6 @@ public:
         if (!mkdtemp(&name[0]))
             throw Failure("cannot make a temporary folder in " + temporaryFolder().string() + ": make room there or set TMPDIR");
         path_ = name;
-        for (const char* file : {"", "script", "picture.svg", "messages"})
-            leftovers_.push_back(std::make_unique<Leftover>(this->file(file)));
     }
     ~TemporaryFolder()
     {
@@ -38,7 +34,6 @@ public:
     std::string file(const char* name) const { return (path_/name).string(); }
 private:
     std::filesystem::path path_;
-    std::vector<std::unique_ptr<Leftover>> leftovers_;
 };
 
 std::string readAll(const std::string& path)

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "target/limited_search.hpp"
-#include "console/leftovers.hpp"
 
 #include <signal.h>
 #include <sys/mman.h>
@@ -52,7 +51,6 @@ private:
     const rlimit processor = {(rlim_t)seconds, (rlim_t)seconds + 1}, none = {0, 0};
     setrlimit(RLIMIT_CPU, &processor);
     setrlimit(RLIMIT_CORE, &none);
-    leaveLeftoversToParent();
 #ifdef __linux__
     prctl(PR_SET_PDEATHSIG, SIGKILL);       // nobody waits for its result any more
 #endif
