@@ -212,6 +212,15 @@ std::vector<PixelRay> pixelRays(const Camera& camera, const std::vector<Point2d>
     return rays;
 }
 
+PixelMatches matchesOf(const Camera& camera1, const Camera& camera2, const MatchedPixels& pixels)
+{
+    const std::vector<PixelRay> rays1 = pixelRays(camera1, pixels.first), rays2 = pixelRays(camera2, pixels.second);
+    PixelMatches matches;
+    for (size_t i = 0; i < pixels.first.size(); i++)
+        matches.push_back({ pixels.first[i], pixels.second[i], rays1[i], rays2[i] });
+    return matches;
+}
+
 PixelMatches select(const PixelMatches& matches, const std::vector<int>& which)
 {
     PixelMatches some;

@@ -40,6 +40,11 @@ typedef std::vector<Match> PixelMatches;
 
 PixelMatches select(const PixelMatches& matches, const std::vector<int>& which);
 
+//! Pixels of camera 1 and of camera 2.
+typedef std::pair<std::vector<Point2d>, std::vector<Point2d> > MatchedPixels;
+
+PixelMatches matchesOf(const Camera& camera1, const Camera& camera2, const MatchedPixels& pixels);
+
 struct MatchedCameras
 {
     const Camera &camera1, &camera2;
