@@ -13,12 +13,13 @@ static const char MANUAL[] = R"(Writes a calibration board to print: PDF or SVG,
 
   refract_board --pattern=chessboard --size=9x6 --square=25 --out=board.pdf
   refract_board --pattern=charuco --size=11x7 --square=22 --dictionary=DICT_5X5_100 --paper=A3 --out=board.svg
+  refract_board --pattern=aprilgrid --size=6x6 --square=24 --tag-spacing=0.3 --out=tags.pdf
 
 Below the board stand its size, as the other tools want it, and a ruler of 100 mm. Print at 100 % ("actual size", not "fit to page")
 and measure the ruler: if it is not 100 mm long, neither is a square what --square says; print again, or measure the whole board and
 give the square that follows. Paper bends: glue it on something flat.
 
-A chessboard with one even and one odd number of inner corners, or ChArUco, cannot be taken for one turned by half.)";
+A chessboard with one even and one odd number of inner corners, ChArUco or AprilGrid cannot be taken for one turned by half.)";
 
 namespace {
 
@@ -49,11 +50,13 @@ void requireExtension(const std::string& path)
 }
 
 //! As the other tools are told of it.
-std::string asOptions(const Options& o)
+std::string asOptions(const Options& o, double tagSpacing)
 {
     std::string text = "--pattern=" + o.target.pattern + " --size=" + o.target.size + cv::format(" --square=%g", o.target.square);
     if (o.target.pattern == "charuco")
         text += (o.target.marker > 0 ? cv::format(" --marker=%g", o.target.marker) : "") + " --dictionary=" + o.target.dictionary;
+    if (o.target.pattern == "aprilgrid")
+        text += cv::format(" --tag-spacing=%g", tagSpacing);
     return text + (o.unit == "mm" ? "" : " --unit=" + o.unit);
 }
 
@@ -71,7 +74,7 @@ int refract_board_main(int argc, char** argv)
         requireExtension(options.out);
         checkOutputs({{"--out", options.out, OUTPUT_TEXT}}, {command.settings()});
         const BoardPage page(target, millimetres, options.paper);
-        page.write(options.out, {asOptions(options), cv::format("Square: %g mm. The ruler is 100 mm long: print at 100 %%, not "
+        page.write(options.out, {asOptions(options, target.tagSpacing()), cv::format("Square: %g mm. The ruler is 100 mm long: print at 100 %%, not "
                                                                 "fitted to the page, and measure it.", square)});
         if (!command.quiet())
             std::cout << options.out << ": " << page.paperName()

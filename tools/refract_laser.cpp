@@ -250,6 +250,8 @@ int calibrateSheet(const Options& o, const Calibration& calibration, const Comma
     if (!o.target.given())
         throw Failure("a sheet is calibrated with a board: give --size and --square");
     const Target target(o.target);
+    if (target.pattern() == Target::APRILGRID)
+        throw Failure("--pattern=aprilgrid leaves too little white for a line of light: take a chessboard, ChArUco or dots");
     requireSameUnit(calibration, target.square(), o.unit);
     const std::unique_ptr<const EmitterPrior> emitter(o.emitter.empty() ? nullptr : new EmitterPrior(o.emitter));
     const DetectedImages set = readDetectedImages(o.images, &target, calibration.cameras[0].camera->imageSize(), command.quiet(),

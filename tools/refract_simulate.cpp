@@ -31,7 +31,7 @@ The same RIG.yml gives the same images.
 RIG.yml (cv::FileStorage, lengths in one unit of your choice):
 
   target: { pattern: chessboard, size: "6x5", square: 39. }   # or circles, acircles, charuco (with
-                         # marker: side, dictionary: DICT_4X4_250)
+                         # marker: side, dictionary: DICT_4X4_250; aprilgrid: tag_spacing)
   camera1: { image_width, image_height, camera_matrix, distortion_coefficients, lens_model, glass_window }
   camera2: { ... }       # as in calib.yml, up to camera16; one camera: its keys at top level instead
   R, T                   # camera 1 -> camera 2; R3, T3: camera 1 -> camera 3; ...
@@ -164,6 +164,8 @@ void writeTarget(FileStorage& fs, const TargetOptions& options, const Target& ta
     fs << "target" << "{" << "pattern" << options.pattern << "size" << options.size << "square" << options.square;
     if (target.pattern() == Target::CHARUCO)
         fs << "marker" << options.marker << "dictionary" << options.dictionary;
+    if (target.pattern() == Target::APRILGRID)
+        fs << "tag_spacing" << target.tagSpacing();
     fs << "}";
 }
 

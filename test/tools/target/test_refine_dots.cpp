@@ -79,9 +79,9 @@ TEST_CASE("A dot whose surroundings do not do stays where the blob is", "[target
 {
     std::vector<DotImage> dots = {{Point2d(50, 50), Matx22d(0.1, 0, 0, 0.1)}, {Point2d(-40, 1e6), Matx22d(0.1, 0, 0, 0.1)}};
     const std::vector<DotImage> before = dots;
-    refineDots(Mat(100, 100, CV_8U, Scalar(80)), dots, 3);      // nothing to see
+    refineDots(Mat(100, 100, CV_8U, Scalar(80)), dots, {3, 3});      // nothing to see
     for (size_t i = 0; i < dots.size(); i++)
         CHECK(dots[i].centre == before[i].centre);
-    refineDots(Mat(100, 100, CV_8U, Scalar(80)), dots, 0.9);    // no room
+    refineDots(Mat(100, 100, CV_8U, Scalar(80)), dots, {0.9, 0.9});    // no room
     CHECK(dots[0].centre == before[0].centre);
 }

@@ -19,9 +19,16 @@ namespace {
 const int PARTS = 8;        // points per sample at an edge, each way
 const int DRAWING = 240;    // pixels per square of a ChArUco board's drawing
 
-int columnsOf(const Target& target) { return target.size().width*(target.pattern() == Target::ACIRCLES ? 2 : 1); }
+//! From the first point to the last and a square more.
+cv::Size2d squaresOf(const Target& target)
+{
+    cv::Size2d last;
+    for (const cv::Point3d& p : target.objectPoints())
+        last = cv::Size2d(std::max(last.width, p.x), std::max(last.height, p.y));
+    return cv::Size2d(last.width/target.square() + 1, last.height/target.square() + 1);
+}
 
-bool isInside(double s, double t, int columns, int rows) { return s > -1.5 && t > -1.5 && s < columns + 0.5 && t < rows + 0.5; }
+bool isInside(double s, double t, double columns, double rows) { return s > -1.5 && t > -1.5 && s < columns + 0.5 && t < rows + 0.5; }
 
 //! Grey level of the target's plane at (s, t) in units of --square, (0, 0) the first point.
 class Paint
@@ -30,8 +37,9 @@ public:
     Paint(const Target& target, const Exposure& exposure) : pattern_(target.pattern()), exposure_(exposure)
     {
         drawing_ = target.drawing(DRAWING);
-        columns_ = columnsOf(target);
-        rows_ = target.size().height;
+        border_ = target.border();
+        columns_ = squaresOf(target).width;
+        rows_ = squaresOf(target).height;
     }
 
     double operator()(double s, double t) const
@@ -44,11 +52,12 @@ public:
 private:
     bool isDark(double s, double t) const
     {
-        const bool inside = s >= -1 && t >= -1 && s < columns_ && t < rows_;
+        const bool inside = s >= -border_ && t >= -border_ && s < columns_ - 1 + border_ && t < rows_ - 1 + border_;
         if (pattern_ == Target::CHESSBOARD)
             return inside && ((int)std::floor(s) + (int)std::floor(t)) % 2 == 0;
-        if (pattern_ == Target::CHARUCO)
-            return inside && drawing_.at<uchar>((int)((t + 1)*DRAWING), (int)((s + 1)*DRAWING)) < 128;
+        if (!drawing_.empty())
+            return inside && drawing_.at<uchar>(std::min((int)((t + border_)*DRAWING), drawing_.rows - 1),
+                                                std::min((int)((s + border_)*DRAWING), drawing_.cols - 1)) < 128;
         const double radius = 0.3*(pattern_ == Target::ACIRCLES ? 2 : 1);
         for (int row = cvFloor(t); row <= cvFloor(t) + 1; row++)
         {
@@ -64,8 +73,8 @@ private:
 
     Target::Pattern pattern_;
     Exposure exposure_;
-    int columns_, rows_;
-    Mat drawing_;           // of a ChArUco board
+    double border_, columns_, rows_;
+    Mat drawing_;           // of a board with markers
 };
 
 //! Target coordinates, in squares, that every pixel of the padded image sees; NaN where it sees nothing.
@@ -152,7 +161,7 @@ static void lightBoard(const Target& target, const BoardPose& pose, const Mat& c
     addLight(light, points, reflectance, nullptr, levels);
 }
 
-bool isOnBoard(const Target& target, double s, double t) { return isInside(s, t, columnsOf(target), target.size().height); }
+bool isOnBoard(const Target& target, double s, double t) { return isInside(s, t, squaresOf(target).width, squaresOf(target).height); }
 
 Mat render(const Target& target, const BoardPose& pose, const Viewpoint& view, const Exposure& exposure, uint64_t seed,
            const Illumination* light)

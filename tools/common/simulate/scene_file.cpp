@@ -174,6 +174,7 @@ PosesByName readTarget(const FileStorage& fs, Scene& scene, const std::string& f
     scene.target.size = target.text("size", "");
     scene.target.square = target.number("square", 1e-9, 1e9);
     scene.target.marker = target.number("marker", 0, 1e9, 0);
+    scene.target.tagSpacing = target.number("tag_spacing", 0, 1, 0);
     scene.target.dictionary = target.text("dictionary", scene.target.dictionary);
 
     const Target points(scene.target);

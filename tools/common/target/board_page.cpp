@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "target/board_page.hpp"
+#include "target/april_grid.hpp"
 #include "console/failure.hpp"
 #include "console/file_output.hpp"
 #include "console/numbers.hpp"
@@ -71,6 +72,34 @@ void addChessboard(cairo_t* cairo, cv::Size squares, double square, Point2d corn
             addRectangle(cairo, Rect2d(corner.x + column*square, corner.y + row*square, square, square));
 }
 
+//! The dark modules of a marker; runs in a row are one rectangle.
+void addModules(cairo_t* cairo, const cv::Mat& modules, Point2d corner, double module)
+{
+    for (int v = 0; v < modules.rows; v++)
+        for (int u = 0, end; u < modules.cols; u = end + 1)
+        {
+            for (end = u; end < modules.cols && modules.at<uchar>(v, end) == 0; )
+                end++;
+            if (end > u)
+                addRectangle(cairo, Rect2d(corner.x + u*module, corner.y + v*module, (end - u)*module, module));
+        }
+}
+
+//! Tags, and the squares at the corners of each.
+void addAprilGrid(cairo_t* cairo, cv::Size tags, double side, double spacing, Point2d corner)
+{
+    for (int row = 0; row <= tags.height; row++)
+        for (int column = 0; column <= tags.width; column++)
+        {
+            const Point2d at = corner + Point2d(column, row)*(1 + spacing)*side;
+            addRectangle(cairo, Rect2d(at.x, at.y, spacing*side, spacing*side));
+            if (row == tags.height || column == tags.width)
+                continue;
+            const cv::Mat modules = aprilTagModules((tags.height - 1 - row)*tags.width + column);
+            addModules(cairo, modules, at + Point2d(spacing, spacing)*side, side/modules.cols);
+        }
+}
+
 //! The picture of modules says which squares are dark, and what the markers in the others are.
 void addCharuco(cairo_t* cairo, const cv::Mat& modules, int perSquare, double square, double marker, Point2d corner)
 {
@@ -84,15 +113,7 @@ void addCharuco(cairo_t* cairo, const cv::Mat& modules, int perSquare, double sq
                 addRectangle(cairo, Rect2d(at.x, at.y, square, square));
                 continue;
             }
-            for (int v = 1; v < perSquare - 1; v++)
-                for (int u = 1, end; u < perSquare - 1; u = end + 1)       // a run of dark modules is one rectangle
-                {
-                    for (end = u; end < perSquare - 1 && modules.at<uchar>(row + v, column + end) == 0; )
-                        end++;
-                    if (end > u)
-                        addRectangle(cairo, Rect2d(at.x + border + (u - 1)*module, at.y + border + (v - 1)*module, (end - u)*module,
-                                                   module));
-                }
+            addModules(cairo, modules(cv::Rect(column + 1, row + 1, perSquare - 2, perSquare - 2)), at + Point2d(border, border), module);
         }
 }
 
@@ -137,7 +158,7 @@ BoardPage::BoardPage(const Target& target, double millimetres, const std::string
 
 double BoardPage::border() const
 {
-    return !hasDots() ? square() : target_.pattern() == Target::ACIRCLES ? 2*DOT*square() : DOT*square();
+    return !hasDots() ? target_.border()*square() : target_.pattern() == Target::ACIRCLES ? 2*DOT*square() : DOT*square();
 }
 
 void BoardPage::choosePaper(const std::string& paper, Size2d needed)
@@ -188,6 +209,8 @@ void BoardPage::drawBoard(cairo_t* cairo) const
         const cv::Mat modules = target_.modules();
         addCharuco(cairo, modules, modules.cols/squares.width, square(), target_.marker()*millimetres_, board_.tl());
     }
+    else if (target_.pattern() == Target::APRILGRID)
+        addAprilGrid(cairo, target_.size()/2, square(), target_.tagSpacing(), board_.tl());
     else
         for (const Point2d& p : points())
         {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "target/circle_grid.hpp"
+#include "target/dot_lattice.hpp"
 #include "target/limited_search.hpp"
 #include "target/refine_dots.hpp"
 #include <opencv2/calib3d.hpp>
@@ -16,7 +17,6 @@ namespace tools {
 
 namespace {
 
-
 //! Diameters of the dots at some centres; 0 where no blob is.
 std::vector<Point2f> diametersAt(const std::vector<Point2f>& centres, const std::vector<KeyPoint>& blobs)
 {
@@ -29,6 +29,17 @@ std::vector<Point2f> diametersAt(const std::vector<Point2f>& centres, const std:
     return diameters;
 }
 
+//! Of a grid of which some dots are covered, or larger than others; empty: none. NaN where a dot is missing.
+std::vector<Point2f> gridOfBlobs(const std::vector<KeyPoint>& blobs, Size size, bool asymmetric)
+{
+    const DotLattice lattice = findLattice(blobs);
+    const std::vector<int> dots = dotsOfGrid(asymmetric ? asAsymmetric(lattice) : lattice, gridOf(size, asymmetric));
+    std::vector<Point2f> centres;
+    for (int dot : dots)
+        centres.push_back(dot < 0 ? Point2f(NAN, NAN) : blobs[dot].pt);
+    return centres;
+}
+
 //! Centres, then as many points whose x is a diameter. The largest dot that can fit decides the blob detector's limits.
 std::vector<Point2f> findDots(const Mat& grey, Size size, bool asymmetric)
 {
@@ -39,17 +50,16 @@ std::vector<Point2f> findDots(const Mat& grey, Size size, bool asymmetric)
     {
         limits.blobColor = colour;
         const auto detector = SimpleBlobDetector::create(limits);
-        for (const int extra : {0, (int)CALIB_CB_CLUSTERING})
-        {
-            std::vector<Point2f> found;
-            if (!findCirclesGrid(grey, size, found, flags | extra, detector))
-                continue;
-            std::vector<KeyPoint> blobs;
-            detector->detect(grey, blobs);
-            const std::vector<Point2f> diameters = diametersAt(found, blobs);
-            found.insert(found.end(), diameters.begin(), diameters.end());
-            return found;
-        }
+        std::vector<Point2f> found;
+        std::vector<KeyPoint> blobs;
+        detector->detect(grey, blobs);
+        if (!findCirclesGrid(grey, size, found, flags, detector))
+            found = gridOfBlobs(blobs, size, asymmetric);
+        if (found.empty() && !findCirclesGrid(grey, size, found, flags | CALIB_CB_CLUSTERING, detector))
+            continue;
+        const std::vector<Point2f> diameters = diametersAt(found, blobs);
+        found.insert(found.end(), diameters.begin(), diameters.end());
+        return found;
     }
     return {};
 }
@@ -135,18 +145,26 @@ DiscImage discImage(const BoardMap& map, const Vec2d& centre, double radius)
     return {0.5*std::abs(twice), origin + sum*(1/(3*twice))};
 }
 
-//! Of the dots on the board, from the areas of their images.
-double dotRadius(const BoardMap& map, const std::vector<Vec2d>& grid, const std::vector<double>& areas)
+/** Of the dots on the board, from the areas of their images: the usual one, or their own where they are not as large as the others, as
+marks of the middle or of a corner are. Empty: there are no areas. */
+std::vector<double> dotRadii(const BoardMap& map, const std::vector<Vec2d>& grid, const std::vector<double>& areas)
 {
-    const double TRIAL = 0.3;       // of the distance between dots
-    std::vector<double> radii;
+    const double TRIAL = 0.3, ALIKE = 0.2;       // of the distance between dots; of a radius
+    std::vector<double> radii, known;
     for (size_t i = 0; i < grid.size(); i++)
+    {
+        radii.push_back(TRIAL*std::sqrt(areas[i]/discImage(map, grid[i], TRIAL).area));
         if (areas[i] > 0)
-            radii.push_back(TRIAL*std::sqrt(areas[i]/discImage(map, grid[i], TRIAL).area));
-    if (radii.empty())
-        return 0.;
-    std::nth_element(radii.begin(), radii.begin() + radii.size()/2, radii.end());
-    return radii[radii.size()/2];
+            known.push_back(radii.back());
+    }
+    if (known.empty())
+        return {};
+    std::nth_element(known.begin(), known.begin() + known.size()/2, known.end());
+    const double usual = known[known.size()/2];
+    for (double& radius : radii)
+        if (!(radius > 0) || std::abs(radius/usual - 1) < ALIKE)
+            radius = usual;
+    return radii;
 }
 
 //! The ellipse to which a board maps a disc, to first order.
@@ -159,28 +177,29 @@ DotImage dotAt(const BoardMap& map, const Vec2d& centre, double radius)
 }
 
 /** Of a board seen at an angle the middle of a dot's image is not the image of its centre: tenths of a pixel, all in one direction.
-All dots together say how the board is seen, their areas how large they are. */
+All dots together say how the board is seen, their areas how large they are.
+@param nearest distance of two dots on the board */
 std::vector<Point2d> imagesOfCentres(const Mat& grey, const std::vector<Point2d>& blobs, std::vector<double> areas,
-                                     const std::vector<Vec2d>& grid)
+                                     const std::vector<Vec2d>& grid, double nearest)
 {
     const size_t FEWEST = 9;
     const double RIM = 0.1;         // of a radius, that is left to the next dot
     if (blobs.size() < FEWEST)
         return blobs;
     const BoardMap roughly(grid, blobs);
-    const double radius = dotRadius(roughly, grid, areas);
-    if (!(radius > 0))
+    const std::vector<double> radii = dotRadii(roughly, grid, areas);
+    if (radii.empty())
         return blobs;
+    const double largest = *std::max_element(radii.begin(), radii.end());
     std::vector<DotImage> dots;
+    std::vector<double> reach;
     for (size_t i = 0; i < blobs.size(); i++)
     {
-        dots.push_back(dotAt(roughly, grid[i], radius));
+        dots.push_back(dotAt(roughly, grid[i], radii[i]));
         dots[i].centre = blobs[i];
+        reach.push_back((nearest - largest)/radii[i] - RIM);
     }
-    double nearest = INFINITY;
-    for (size_t i = 1; i < grid.size(); i++)
-        nearest = std::min(nearest, norm(grid[i] - grid[0]));
-    refineDots(grey, dots, nearest/radius - 1 - RIM);
+    refineDots(grey, dots, reach);
     std::vector<Point2d> centres;
     for (size_t i = 0; i < dots.size(); i++)
     {
@@ -188,9 +207,9 @@ std::vector<Point2d> imagesOfCentres(const Mat& grey, const std::vector<Point2d>
         areas[i] = dots[i].area();
     }
     const BoardMap map(grid, centres);
-    const double exactly = dotRadius(map, grid, areas);
+    const std::vector<double> exactly = dotRadii(map, grid, areas);
     for (size_t i = 0; i < dots.size(); i++)
-        centres[i] -= discImage(map, grid[i], exactly).middle - map.at(grid[i]);
+        centres[i] -= discImage(map, grid[i], exactly[i]).middle - map.at(grid[i]);
     return centres;
 }
 
@@ -210,11 +229,23 @@ std::vector<Vec2d> gridOf(Size size, bool asymmetric)
 std::vector<Point2d> detectCircleGrid(const Mat& grey, Size size, bool asymmetric, int seconds)
 {
     const std::vector<Point2f> found = searchLimited(seconds, 2*size.area(), [&] { return findDots(grey, size, asymmetric); });
-    const auto middle = found.begin() + found.size()/2;
+    const std::vector<Vec2d> grid = gridOf(size, asymmetric);
+    std::vector<Point2d> blobs;
     std::vector<double> areas;
-    for (auto diameter = middle; diameter != found.end(); diameter++)
-        areas.push_back(0.25*CV_PI*diameter->x*diameter->x);
-    return imagesOfCentres(grey, {found.begin(), middle}, areas, gridOf(size, asymmetric));
+    std::vector<Vec2d> places;
+    for (size_t i = 0; 2*i < found.size(); i++)
+        if (found[i].x == found[i].x)
+        {
+            const double diameter = found[found.size()/2 + i].x;
+            blobs.push_back(found[i]);
+            areas.push_back(0.25*CV_PI*diameter*diameter);
+            places.push_back(grid[i]);
+        }
+    const std::vector<Point2d> centres = imagesOfCentres(grey, blobs, areas, places, asymmetric ? std::sqrt(2.) : 1.);
+    std::vector<Point2d> points;
+    for (size_t i = 0, next = 0; 2*i < found.size(); i++)
+        points.push_back(found[i].x == found[i].x ? centres[next++] : Point2d(NAN, NAN));
+    return points;
 }
 
 } // namespace tools

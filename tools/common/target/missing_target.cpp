@@ -4,6 +4,7 @@
 #include "target/missing_target.hpp"
 #include "console/failure.hpp"
 #include "console/numbers.hpp"
+#include "target/dot_lattice.hpp"
 #include "target/partial_chessboard.hpp"
 
 #include <algorithm>
@@ -70,7 +71,7 @@ std::optional<Target> like(const Target& target, const std::string& pattern, con
 {
     TargetOptions options;
     options.pattern = pattern;
-    options.size = sizeText(target.size());
+    options.size = target.sizeText();
     options.square = target.square();
     options.dictionary = dictionary;
     options.partial = partial;
@@ -105,7 +106,7 @@ std::string partText(const std::vector<Without>& images, const Target& target, C
     std::string text;
     for (const std::string& size : sizes)
         text += (text.empty() ? "" : ", ") + size;
-    return "only a part of the chessboard of --size=" + sizeText(target.size()) + " is seen in " + quotedNames(images) + " (" + text
+    return "only a part of the chessboard of --size=" + target.sizeText() + " is seen in " + quotedNames(images) + " (" + text
            + " inner corners): " + partAdvice(images, target, channel);
 }
 
@@ -116,7 +117,7 @@ std::string otherPattern(const std::vector<Without>& images, const Target& targe
         {Target::CHARUCO, "charuco", "DICT_4X4_250"}, {Target::CHARUCO, "charuco", "DICT_5X5_1000"},
         {Target::CHARUCO, "charuco", "DICT_6X6_1000"}, {Target::CHARUCO, "charuco", "DICT_7X7_1000"},
         {Target::CHARUCO, "charuco", "DICT_ARUCO_ORIGINAL"}, {Target::CIRCLES, "circles", "DICT_4X4_250"},
-        {Target::ACIRCLES, "acircles", "DICT_4X4_250"}};
+        {Target::ACIRCLES, "acircles", "DICT_4X4_250"}, {Target::APRILGRID, "aprilgrid", "DICT_4X4_250"}};
     const std::vector<Without> one(images.begin(), images.begin() + 1);
     for (const auto& other : OTHERS)
     {
@@ -136,6 +137,22 @@ cv::Size chessboardIn(const std::vector<Without>& images, Channel channel)
     for (Without& image : seen)
         image.chessboard = sorted(lookForChessboard(readGrey(image.path, channel)));
     return seen.size() > 1 ? usualSize(seen) : seen[0].chessboard;
+}
+
+//! A plate of dots of another size, or one of which a row is covered; empty: no image shows one.
+std::string otherDots(const std::vector<Without>& images, const Target& target, Channel channel)
+{
+    for (size_t i = 0; i < std::min(images.size(), TRIED); i++)
+    {
+        bool asymmetric = false;
+        const cv::Size size = dotGridIn(readGrey(images[i].path, channel), asymmetric);
+        const std::string pattern = asymmetric ? "acircles" : "circles";
+        if (!size.empty())
+            return "the dots in " + quotedNames({images[i]}) + " look like a plate of " + sizeText(size)
+                   + " dots, not --pattern=" + target.patternName() + " --size=" + target.sizeText() + ": give --pattern=" + pattern
+                   + " --size=" + sizeText(size) + ", or, if it has more, keep its outer rows and columns in view";
+    }
+    return "";
 }
 
 } // namespace
@@ -173,22 +190,25 @@ std::string explainMissing(const std::vector<Without>& images, const std::string
     if (target.partial())
         return "no piece of the chessboard, of at least 5x5 inner corners, was found in " + looked + ": show more of it, check light and "
                "focus";
+    const std::string dots = otherDots(images, target, channel);
+    if (!dots.empty())
+        return dots;
     const std::string other = otherPattern(images, target, channel);
     if (!other.empty())
         return "the target in " + quotedNames({images[0]}) + " looks like one of another kind: give " + other + ", or check --size="
-               + sizeText(target.size());
+               + target.sizeText();
     const cv::Size chessboard = isChessboard ? cv::Size() : chessboardIn(images, channel);
     if (!chessboard.empty())
         return "the target in " + quotedNames(first) + " looks like a chessboard of " + sizeText(chessboard)
                + " inner corners: give --pattern=chessboard --size=" + sizeText(chessboard);
-    return "the target was not found in " + looked + ": check --pattern and --size=" + sizeText(target.size())
+    return "the target was not found in " + looked + ": check --pattern and --size=" + target.sizeText()
            + " (inner corners or dots), light and focus";
 }
 
 std::string otherTargetText(const std::string& where, const Target& target, cv::Size other)
 {
     return "the chessboard in " + where + " looks like one of " + sizeText(other) + " inner corners, not --size="
-        + sizeText(target.size()) + ": give --size=" + sizeText(other) + ", and count inner corners, not squares";
+        + target.sizeText() + ": give --size=" + sizeText(other) + ", and count inner corners, not squares";
 }
 
 } // namespace tools

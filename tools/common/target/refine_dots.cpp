@@ -110,12 +110,12 @@ DotImage refined(const Mat& grey, const DotImage& dot, double reach)
 
 } // namespace
 
-void refineDots(const Mat& grey, std::vector<DotImage>& dots, double reach)
+void refineDots(const Mat& grey, std::vector<DotImage>& dots, const std::vector<double>& reach)
 {
     const double WIDE = 1.6;
-    CV_Assert(grey.type() == CV_8U);
-    for (DotImage& dot : dots)
-        dot = refined(grey, dot, std::min(WIDE, reach));
+    CV_Assert(grey.type() == CV_8U && reach.size() == dots.size());
+    for (size_t i = 0; i < dots.size(); i++)
+        dots[i] = refined(grey, dots[i], std::min(WIDE, reach[i]));
 }
 
 } // namespace tools

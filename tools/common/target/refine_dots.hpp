@@ -23,8 +23,8 @@ struct DotImage
 which may get brighter across a dot. Blob detectors use one brightness for all of the image, and are hundredths of a pixel off.
 A dot whose surroundings do not do stays as it is.
 @param dots in: about where they are
-@param reach how far from a dot's centre there is no other one, in units of its radius */
-void refineDots(const cv::Mat& grey, std::vector<DotImage>& dots, double reach);
+@param reach how far from each dot's centre there is no other one, in units of its radius */
+void refineDots(const cv::Mat& grey, std::vector<DotImage>& dots, const std::vector<double>& reach);
 
 } // namespace tools
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "target/target.hpp"
+#include "target/april_grid.hpp"
 #include "target/charuco.hpp"
 #include "target/chessboard.hpp"
 #include "target/circle_grid.hpp"
@@ -9,10 +10,12 @@
 #include "console/failure.hpp"
 #include "console/numbers.hpp"
 #include "console/options.hpp"
+#include <opencv2/calib3d.hpp>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 
 namespace tools {
 
@@ -24,7 +27,9 @@ namespace {
 
 const std::map<std::string, Target::Pattern> PATTERNS = {
     {"chessboard", Target::CHESSBOARD}, {"circles", Target::CIRCLES},
-    {"acircles", Target::ACIRCLES}, {"charuco", Target::CHARUCO}};
+    {"acircles", Target::ACIRCLES}, {"charuco", Target::CHARUCO}, {"aprilgrid", Target::APRILGRID}};
+
+const double KALIBR_SPACING = 0.3;      // of its boards, if nothing is said
 
 std::vector<Point2d> renumbered(const std::vector<Point2d>& points, const std::vector<int>& order)
 {
@@ -43,26 +48,28 @@ double signedArea(const std::vector<Point2d>& points, Size size)
 
 void TargetOptions::addTo(OptionParser& parser, bool required)
 {
-    parser.add("--pattern", pattern, "chessboard, circles, acircles or charuco")
-        .check(isMember({"chessboard", "circles", "acircles", "charuco"})).captureDefault();
-    parser.add("--size", size, "COLSxROWS: inner corners (chessboard, charuco) or dots").required(required);
+    parser.add("--pattern", pattern, "chessboard, circles, acircles, charuco or aprilgrid (Kalibr's)")
+        .check(isMember({"chessboard", "circles", "acircles", "charuco", "aprilgrid"})).captureDefault();
+    parser.add("--size", size, "COLSxROWS: inner corners (chessboard, charuco), dots or tags (aprilgrid)").required(required);
     parser.add("--square", square, "side of a square; distance between dots; acircles: half the distance "
-               "between the dots of a row").required(required).check(moreThanZero());
+               "between the dots of a row; aprilgrid: side of a tag").required(required).check(moreThanZero());
     parser.add("--marker", marker, "charuco: side of a marker (default: 3/4 of a square)")
         .check(moreThanZero());
     parser.add("--dictionary", dictionary, "charuco: OpenCV's name of the marker dictionary")
         .captureDefault();
+    parser.add("--tag-spacing", tagSpacing, "aprilgrid: distance between tags, in sides of a tag, as Kalibr's tagSpacing (default: 0.3)")
+        .check(moreThanZero());
     parser.addFlag("--legacy", legacy, "charuco: made by OpenCV before 4.6, with a marker in the first corner (an even number of rows of "
                    "squares)");
 }
 
 Target::Target(const TargetOptions& options)
     : pattern_(CHESSBOARD), size_(parseSize(options.size, "--size")), square_(options.square),
-      marker_(options.marker), dictionary_(0), partial_(options.partial), legacy_(options.legacy)
+      marker_(options.marker), tagSpacing_(options.tagSpacing), dictionary_(0), partial_(options.partial), legacy_(options.legacy)
 {
     const auto found = PATTERNS.find(options.pattern);
     if (found == PATTERNS.end())
-        throw Failure("--pattern=" + options.pattern + ": give chessboard, circles, acircles or charuco");
+        throw Failure("--pattern=" + options.pattern + ": give chessboard, circles, acircles, charuco or aprilgrid");
     pattern_ = found->second;
     if (!(square_ > 0) || !std::isfinite(square_))
         throw Failure("--square: give the length of a square's side, more than 0");
@@ -84,7 +91,16 @@ Target::Target(const TargetOptions& options)
         dictionary_ = charucoDictionary(options.dictionary);
         requireMarkers(size_, dictionary_);
     }
-    for (const cv::Vec2d& place : gridOf(size_, pattern_ == ACIRCLES))
+    if (pattern_ != APRILGRID && tagSpacing_ > 0)
+        throw Failure("--tag-spacing is for --pattern=aprilgrid: leave it out");
+    if (pattern_ == APRILGRID)
+    {
+        tagSpacing_ = tagSpacing_ > 0 ? tagSpacing_ : KALIBR_SPACING;
+        if (tagSpacing_ > 1 || size_.area() > APRIL_TAGS)
+            throw Failure("--pattern=aprilgrid: a board has up to " + std::to_string(APRIL_TAGS) + " tags, and --tag-spacing is 1 or less");
+        size_ = size_*2;
+    }
+    for (const cv::Vec2d& place : pattern_ == APRILGRID ? aprilGridOf(size_/2, tagSpacing_) : gridOf(size_, pattern_ == ACIRCLES))
         objectPoints_.emplace_back(square_*place[0], square_*place[1], 0);
 }
 
@@ -98,7 +114,16 @@ static void requireNewLayout(bool legacy)
 cv::Mat Target::drawing(int pixelsPerSquare) const
 {
     requireNewLayout(legacy_);
+    if (pattern_ == APRILGRID)
+        return drawAprilGrid(size_/2, tagSpacing_, pixelsPerSquare);
     return pattern_ == CHARUCO ? drawCharuco(size_, square_, marker_, dictionary_, pixelsPerSquare) : Mat();
+}
+
+std::string Target::sizeText() const { return tools::sizeText(pattern_ == APRILGRID ? size_/2 : size_); }
+
+std::string Target::patternName() const
+{
+    return std::find_if(PATTERNS.begin(), PATTERNS.end(), [&](const auto& p) { return p.second == pattern_; })->first;
 }
 
 cv::Mat Target::modules() const
@@ -130,6 +155,8 @@ std::vector<Point2d> Target::detect(const Mat& grey, Size* other, Effort effort)
     const int secondsOfDots = effort == HURRIED ? std::min(hurried, 20) : 20;
     if (pattern_ == CHARUCO)
         return detectCharuco(grey, size_, square_, marker_, dictionary_, legacy_);
+    if (pattern_ == APRILGRID)
+        return detectAprilGrid(grey, size_/2, tagSpacing_);
     if (partial_)
         return detectPartialChessboard(grey, size_);
     const std::vector<Point2d> points = pattern_ == CHESSBOARD ? detectChessboard(grey, size_, seenSize, secondsOfChessboard)
@@ -152,7 +179,7 @@ std::vector<std::vector<int>> Target::symmetries() const
     std::vector<std::vector<int>> orders(1);
     for (int i = 0; i < count(); i++)
         orders[0].push_back(i);
-    if (pattern_ == CHARUCO)
+    if (pattern_ == CHARUCO || pattern_ == APRILGRID)
         return orders;
     const bool halfTurn = pattern_ == CIRCLES || (pattern_ == CHESSBOARD && (columns + rows) % 2 == 0)
                           || (pattern_ == ACIRCLES && rows % 2 == 0);
@@ -171,30 +198,56 @@ std::vector<std::vector<int>> Target::symmetries() const
     return orders;
 }
 
-std::vector<Point2d> Target::canonical(const std::vector<Point2d>& points, const Mat& grey) const
+//! A board's points with those that were not seen about where they must be.
+static std::vector<Point2d> completed(const std::vector<Point2d>& points, const std::vector<cv::Point3d>& objectPoints)
 {
-    std::vector<Point2d> result = points;
-    if (pattern_ != ACIRCLES && signedArea(result, size_) < 0)      // x right, y down, seen from the front
-        for (int row = 0; row < size_.height; row++)
-            std::reverse(result.begin() + row*size_.width, result.begin() + (row + 1)*size_.width);
-    if (pattern_ == CHESSBOARD && contrastOfFirstSquare(result, size_, grey) > 0)
+    if (std::all_of(points.begin(), points.end(), seen))
+        return points;
+    std::vector<Point2d> pixels, known, board, all;
+    for (size_t i = 0; i < points.size(); i++)
     {
-        if ((size_.width + size_.height) % 2)
-            std::reverse(result.begin(), result.end());
-        else if (size_.width == size_.height)       // a quarter turn swaps dark and light
+        board.emplace_back(objectPoints[i].x, objectPoints[i].y);
+        if (seen(points[i]))
         {
-            std::vector<Point2d> turned;
-            for (int row = 0; row < size_.height; row++)
-                for (int column = 0; column < size_.width; column++)
-                    turned.push_back(result[(size_.height - 1 - column)*size_.width + row]);
-            result = turned;
+            pixels.push_back(points[i]);
+            known.push_back(board[i]);
         }
     }
-    std::vector<Point2d> best = result;
-    for (const std::vector<int>& order : symmetries())
-        if (result[order[0]].x + result[order[0]].y < best[0].x + best[0].y)
-            best = renumbered(result, order);
-    return best;
+    cv::perspectiveTransform(board, all, cv::findHomography(known, pixels));
+    for (size_t i = 0; i < points.size(); i++)
+        if (seen(points[i]))
+            all[i] = points[i];
+    return all;
+}
+
+std::vector<Point2d> Target::canonical(const std::vector<Point2d>& points, const Mat& grey) const
+{
+    const std::vector<Point2d> whole = completed(points, objectPoints_);
+    std::vector<int> order(points.size());
+    std::iota(order.begin(), order.end(), 0);
+    if (pattern_ != ACIRCLES && signedArea(whole, size_) < 0)      // x right, y down, seen from the front
+        for (int row = 0; row < size_.height; row++)
+            std::reverse(order.begin() + row*size_.width, order.begin() + (row + 1)*size_.width);
+    if (pattern_ == CHESSBOARD && contrastOfFirstSquare(renumbered(whole, order), size_, grey) > 0)
+    {
+        if ((size_.width + size_.height) % 2)
+            std::reverse(order.begin(), order.end());
+        else if (size_.width == size_.height)       // a quarter turn swaps dark and light
+        {
+            std::vector<int> turned;
+            for (int row = 0; row < size_.height; row++)
+                for (int column = 0; column < size_.width; column++)
+                    turned.push_back(order[(size_.height - 1 - column)*size_.width + row]);
+            order = turned;
+        }
+    }
+    const auto fromTopLeft = [&](int i) { return whole[i].x + whole[i].y; };
+    const std::vector<std::vector<int>> turns = symmetries();
+    const std::vector<int>* best = &turns[0];
+    for (const std::vector<int>& turn : turns)
+        if (fromTopLeft(order[turn[0]]) < fromTopLeft(order[(*best)[0]]))
+            best = &turn;
+    return renumbered(renumbered(points, order), *best);
 }
 
 std::vector<Point2d> Target::alignWith(const std::vector<Point2d>& reference, const std::vector<Point2d>& points) const

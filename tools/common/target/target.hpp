@@ -13,7 +13,7 @@ namespace tools {
 
 class OptionParser;
 
-//! --pattern, --size, --square (and --marker, --dictionary for ChArUco) as given on the command line.
+//! --pattern, --size, --square (and --marker, --dictionary for ChArUco, --tag-spacing for AprilGrid) as given on the command line.
 struct TargetOptions
 {
     std::string pattern = "chessboard";
@@ -21,6 +21,7 @@ struct TargetOptions
     double square = 0.;
     double marker = 0.;                         //!< ChArUco: side of a marker; 0 = 3/4 of a square
     std::string dictionary = "DICT_4X4_250";    //!< ChArUco
+    double tagSpacing = 0.;                     //!< AprilGrid: between tags, in sides of a tag; 0 = 0.3
     bool legacy = false;                        //!< ChArUco: of the layout before OpenCV 4.6
     bool partial = false;                       //!< chessboard: any piece of it will do, see detectPartialChessboard()
 
@@ -31,25 +32,31 @@ struct TargetOptions
 /* A flat calibration target: its points, row by row, in the plane z = 0, and how to find them in an image.
 
 The order of the points is the same in every image as far as the target allows. A chessboard with one even and one odd
-side, an asymmetric circle grid with an odd number of rows, and ChArUco have no ambiguity: the first point is told by
+side, an asymmetric circle grid with an odd number of rows, ChArUco and AprilGrid have no ambiguity: the first point is told by
 the pattern (chessboard: the first square between corners is dark). On the others the first point is the one
 nearest to the image's top left among those the symmetry allows; alignWith() makes two views agree. */
 class Target
 {
 public:
-    enum Pattern { CHESSBOARD, CIRCLES, ACIRCLES, CHARUCO };
+    enum Pattern { CHESSBOARD, CIRCLES, ACIRCLES, CHARUCO, APRILGRID };
 
     explicit Target(const TargetOptions& options);
 
     Pattern pattern() const { return pattern_; }
-    cv::Size size() const { return size_; }                 //!< inner corners, or dots
+    cv::Size size() const { return size_; }                 //!< inner corners, dots, or corners of tags
+    std::string sizeText() const;                           //!< as --size has it; AprilGrid: tags
+    std::string patternName() const;                        //!< as --pattern has it
     double square() const { return square_; }
     bool partial() const { return partial_; }               //!< any piece of it will do
     int count() const { return size_.area(); }
     const std::vector<cv::Point3d>& objectPoints() const { return objectPoints_; }
 
-    //! ChArUco: the board seen from the front, its outer squares' corner at pixel (-0.5, -0.5); else empty.
+    //! ChArUco, AprilGrid: the board seen from the front, its outer squares' corner at pixel (-0.5, -0.5); else empty.
     cv::Mat drawing(int pixelsPerSquare) const;
+
+    //! From the outermost points to the edge of what is drawn, in squares: AprilGrid's are narrower.
+    double border() const { return pattern_ == APRILGRID ? tagSpacing_ : 1.; }
+    double tagSpacing() const { return tagSpacing_; }       //!< AprilGrid: between tags, in sides of a tag
 
     double marker() const { return marker_; }               //!< ChArUco: side of a marker
 
@@ -82,7 +89,7 @@ private:
 
     Pattern pattern_;
     cv::Size size_;
-    double square_, marker_;
+    double square_, marker_, tagSpacing_;
     int dictionary_;
     bool partial_, legacy_;
     std::vector<cv::Point3d> objectPoints_;

@@ -1,0 +1,251 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+// Boards as they are in the field: plates whose dots are covered or of two sizes, and Kalibr's AprilGrid.
+#include "console/failure.hpp"
+#include "console/numbers.hpp"
+#include "target/april_grid.hpp"
+#include "target/dot_lattice.hpp"
+#include "target/missing_target.hpp"
+#include "target/target.hpp"
+#include "scenes.hpp"
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <catch2/catch.hpp>
+#include <filesystem>
+
+using namespace tools;
+using cv::Mat;
+using cv::Matx33d;
+using cv::Point2d;
+using cv::Size;
+using cv::Vec3d;
+
+namespace {
+
+const Size IMAGE(960, 720);
+
+TargetOptions board(const std::string& pattern, const std::string& size)
+{
+    TargetOptions options;
+    options.pattern = pattern;
+    options.size = size;
+    options.square = 30;
+    return options;
+}
+
+//! Board coordinates, in squares from the first point, to pixels: turned, and seen at an angle.
+Matx33d boardToImage(double square, double degrees, double tilt, Point2d middle)
+{
+    const double a = degrees*CV_PI/180, c = std::cos(a)*square, s = std::sin(a)*square;
+    const Matx33d turned(c, -s, 480 - c*middle.x + s*middle.y, s, c, 360 - s*middle.x - c*middle.y, 0, 0, 1);
+    return Matx33d(1, 0, 0, 0, 1, 0, tilt, -0.5*tilt, 1 - 300*tilt)*turned;
+}
+
+Point2d through(const Matx33d& H, const Point2d& p)
+{
+    const Vec3d h = H*Vec3d(p.x, p.y, 1);
+    return Point2d(h[0]/h[2], h[1]/h[2]);
+}
+
+//! @param isDark at a place of the board
+template <typename Dark>
+Mat picture(const Matx33d& H, const Dark& isDark)
+{
+    const int FINE = 4;
+    scenes::Random random(4501);
+    const Matx33d back = H.inv();
+    Mat image(IMAGE, CV_32F);
+    for (int y = 0; y < image.rows; y++)
+        for (int x = 0; x < image.cols; x++)
+        {
+            int dark = 0;
+            for (int k = 0; k < FINE*FINE; k++)
+                dark += isDark(through(back, Point2d(x + (k % FINE + 0.5)/FINE - 0.5, y + (k/FINE + 0.5)/FINE - 0.5)));
+            image.at<float>(y, x) = (float)(200 - 170.*dark/(FINE*FINE) + random.normal(1.));
+        }
+    cv::GaussianBlur(image, image, Size(), 0.7);
+    image.convertTo(image, CV_8U);
+    return image;
+}
+
+struct Dots
+{
+    Size size;
+    bool asymmetric;
+    std::vector<int> missing, large;
+    double largeRadius = 0.42;
+
+    bool isDark(const Point2d& p) const
+    {
+        for (int row = std::max(cvFloor(p.y), 0); row <= std::min(cvFloor(p.y) + 1, size.height - 1); row++)
+            for (int column = 0; column < size.width; column++)
+            {
+                const int i = row*size.width + column, x = asymmetric ? 2*column + row % 2 : column;
+                const bool isLarge = std::count(large.begin(), large.end(), i) > 0;
+                if (cv::norm(p - Point2d(x, row)) < (isLarge ? largeRadius : 0.26)*(asymmetric ? 1.4 : 1.)
+                    && !std::count(missing.begin(), missing.end(), i))
+                    return true;
+            }
+        return false;
+    }
+};
+
+//! Largest error of the points that were found; those of a board that looks the same turned by half may begin at the other end.
+double worst(const std::vector<Point2d>& found, const Target& target, const Matx33d& H, const std::vector<int>& missing)
+{
+    double least = INFINITY;
+    for (bool turned : {false, true})
+    {
+        double most = 0;
+        for (int i = 0; i < target.count(); i++)
+        {
+            const int of = turned ? target.count() - 1 - i : i;
+            const cv::Point3d p = target.objectPoints()[of];
+            const bool gone = std::count(missing.begin(), missing.end(), of) > 0;
+            most = std::max(most, gone != !seen(found[i]) ? INFINITY
+                            : gone ? 0. : cv::norm(found[i] - through(H, Point2d(p.x, p.y)/target.square())));
+        }
+        least = std::min(least, most);
+    }
+    return least;
+}
+
+std::string explained(const Mat& image, const TargetOptions& options)
+{
+    const std::string path = (std::filesystem::temp_directory_path()/"refract_field_board.png").string();
+    cv::imwrite(path, image);
+    const std::string text = explainMissing({{path, Size()}}, "'" + path + "'", 1, Target(options), BRIGHTNESS);
+    std::filesystem::remove(path);
+    return text;
+}
+
+Mat aprilPicture(Size tags, const Matx33d& H, bool mirrored = false)
+{
+    const int PIXELS = 200;
+    const double spacing = 0.3;
+    const Mat drawn = drawAprilGrid(tags, spacing, PIXELS);
+    return picture(H, [&](const Point2d& p) {
+        const cv::Point at(cvFloor((p.x + spacing)*PIXELS), cvFloor((p.y + spacing)*PIXELS));
+        const cv::Point place = mirrored ? cv::Point(at.x, drawn.rows - 1 - at.y) : at;
+        return cv::Rect(cv::Point(), drawn.size()).contains(place) && drawn.at<uchar>(place) == 0;
+    });
+}
+
+} // namespace
+
+TEST_CASE("Plates of dots of which some are covered are found, and the others stay where they are", "[target][circles]")
+{
+    const Dots plates[] = {{Size(9, 7), false, {31}, {}}, {Size(9, 7), false, {0, 8, 20, 21, 22, 40}, {}},
+                           {Size(8, 8), false, {9, 63}, {}}, {Size(5, 9), true, {0, 12, 22}, {}}, {Size(4, 11), true, {17}, {}}};
+    for (const Dots& plate : plates)
+        for (double degrees : {4., 130.})
+        {
+            CAPTURE(plate.size, plate.asymmetric, degrees);
+            const Target target(board(plate.asymmetric ? "acircles" : "circles", sizeText(plate.size)));
+            const double wide = plate.asymmetric ? 2*plate.size.width : plate.size.width;
+            const Matx33d H = boardToImage(plate.asymmetric ? 40 : 55, degrees, 3e-4, Point2d(0.5*wide, 0.5*plate.size.height));
+            const std::vector<Point2d> found = target.detect(picture(H, [&](const Point2d& p) { return plate.isDark(p); }));
+            REQUIRE((int)found.size() == target.count());
+            if (plate.size.width != plate.size.height)
+                CHECK(worst(found, target, H, plate.missing) < 0.06);
+            CHECK(std::count_if(found.begin(), found.end(), seen) == target.count() - (long)plate.missing.size());
+        }
+}
+
+TEST_CASE("Larger dots that mark the middle of a plate are found as the others are", "[target][circles]")
+{
+    const Dots plate = {Size(9, 7), false, {}, {21, 31, 40}};
+    const Target target(board("circles", "9x7"));
+    for (double tilt : {0., 6e-4})
+    {
+        const Matx33d H = boardToImage(60, 10, tilt, Point2d(4, 3));
+        const std::vector<Point2d> found = target.detect(picture(H, [&](const Point2d& p) { return plate.isDark(p); }));
+        REQUIRE((int)found.size() == target.count());
+        const double most = worst(found, target, H, {});
+        std::cout << "[numbers] plate with larger dots, tilt " << tilt << ": worst " << most << " px off" << std::endl;
+        CHECK(most < 0.06);
+    }
+}
+
+TEST_CASE("A plate of dots of another size is called one", "[target][circles]")
+{
+    const Dots plate = {Size(9, 7), false, {31}, {}};
+    const Mat image = picture(boardToImage(50, 4, 2e-4, Point2d(4, 3)), [&](const Point2d& p) { return plate.isDark(p); });
+    for (const TargetOptions& options : {board("circles", "10x7"), board("chessboard", "10x7"), board("aprilgrid", "3x2")})
+    {
+        CHECK(Target(options).detect(image).empty());
+        const std::string text = explained(image, options);
+        INFO(text);
+        CHECK(text.find("look like a plate of 9x7 dots") != std::string::npos);
+    }
+}
+
+TEST_CASE("A plate whose outer row is covered is no smaller plate with a free choice of rows", "[target][circles]")
+{
+    Dots plate = {Size(9, 7), false, {}, {}};
+    for (int i = 0; i < 9; i++)
+        plate.missing.push_back(i);
+    const Mat image = picture(boardToImage(50, 4, 2e-4, Point2d(4, 3)), [&](const Point2d& p) { return plate.isDark(p); });
+    CHECK(Target(board("circles", "9x7")).detect(image).empty());
+    CHECK(explained(image, board("circles", "9x7")).find("keep its outer rows") != std::string::npos);
+}
+
+TEST_CASE("An AprilGrid is found, whatever its turn, and tags of which a part is hidden are not", "[target][aprilgrid]")
+{
+    const Target target(board("aprilgrid", "5x4"));
+    CHECK(target.count() == 80);
+    CHECK(target.objectPoints()[2].x == Approx(30*1.3));
+    for (double degrees : {0., 90., 200.})
+        for (double tilt : {0., 4e-4})
+        {
+            CAPTURE(degrees, tilt);
+            const Matx33d H = boardToImage(90, degrees, tilt, Point2d(3.1, 2.5));
+            Mat image = aprilPicture(Size(5, 4), H);
+            std::vector<Point2d> found = target.detect(image);
+            REQUIRE((int)found.size() == target.count());
+            double most = 0;
+            for (int i = 0; i < target.count(); i++)
+                most = std::max(most, cv::norm(found[i] - through(H, Point2d(target.objectPoints()[i].x, target.objectPoints()[i].y)/30)));
+            std::cout << "[numbers] AprilGrid turned by " << degrees << ", tilt " << tilt << ": worst corner " << most << " px off\n";
+            CHECK(most < 0.1);
+            // A hand over the first tag of the second row.
+            const Point2d hidden = through(H, Point2d(0.5, 1.8));
+            cv::circle(image, hidden, 40, cv::Scalar(120), cv::FILLED);
+            found = target.detect(image);
+            REQUIRE((int)found.size() == target.count());
+            CHECK(!seen(found[2*10]));
+            CHECK(seen(found[3]));
+        }
+}
+
+TEST_CASE("Tags in another order than Kalibr's are refused by name", "[target][aprilgrid]")
+{
+    const Mat drawn = drawAprilGrid(Size(5, 4), 0.3, 60);
+    Mat other(drawn.size(), CV_8U, cv::Scalar(255));
+    for (int row = 0; row < 4; row++)           // the first tag at the upper left
+        drawn.rowRange(18 + (3 - row)*78, 18 + (3 - row)*78 + 60).copyTo(other.rowRange(18 + row*78, 18 + row*78 + 60));
+    cv::copyMakeBorder(other, other, 30, 30, 30, 30, cv::BORDER_CONSTANT, 255);
+    CHECK_THROWS_WITH(Target(board("aprilgrid", "5x4")).detect(other), Catch::Contains("not where Kalibr puts them"));
+}
+
+TEST_CASE("A tag is that of Kalibr's family: its bits, in its order", "[target][aprilgrid]")
+{
+    const uint64_t FIRST = 0xd5d628584ull;      // 36h11, tag 0: the upper left bit is the highest, 1 is light
+    const Mat modules = aprilTagModules(0);
+    REQUIRE(modules.size() == Size(10, 10));
+    for (int i = 0; i < 36; i++)
+        CHECK((modules.at<uchar>(2 + i/6, 2 + i % 6) > 0) == (((FIRST >> (35 - i)) & 1) == 1));
+    CHECK(cv::countNonZero(modules.row(1)) + cv::countNonZero(modules.row(8)) == 0);
+}
+
+TEST_CASE("What is no AprilGrid is none; what does not go with it is refused", "[target][aprilgrid]")
+{
+    const Target target(board("aprilgrid", "5x4"));
+    CHECK(target.detect(Mat(480, 640, CV_8U, cv::Scalar(127))).empty());
+    TargetOptions options = board("chessboard", "5x4");
+    options.tagSpacing = 0.3;
+    CHECK_THROWS_AS(Target(options), Failure);
+    options = board("aprilgrid", "30x30");
+    CHECK_THROWS_AS(Target(options), Failure);
+}
