@@ -5,6 +5,7 @@
 #include "bundle/moments.hpp"
 #include "calibrate/units.hpp"
 #include "console/cli.hpp"
+#include "formats/point_table.hpp"
 #include "console/file_output.hpp"
 #include "console/outputs.hpp"
 
@@ -24,7 +25,8 @@ is enough to start from, unless --center says otherwise; a tube needs --axis, ro
 
 matches.csv: [image,]id,u1,v1,u2,v2,..., one row a point, its raw pixel in each camera; an empty cell where a camera did not see
 it. The same id with another image is another point: of a wand, image is the moment. What refract_measure or refract_match wrote will
-do. std1,std2,... (of all cameras, or none) say how well each pixel is known; without, all are alike.
+do, and so will tables of OpenLPT, DLTdv, Argus, DeepLabCut and OpenPTV (doc/formats.md). std1,std2,... (of all cameras, or none) say how
+well each pixel is known; without, all are alike.
 
 lengths.csv: [image,]id1,id2,length,std, distances between points, with one standard deviation; without image a row is of all images
 that show both points. Rows with equal length and std are one object: its error is one, however many moments there are.
@@ -50,6 +52,7 @@ struct Options
 {
     std::string start, points, lengths, out, pointsOut, summary;
     BundleOptions bundle;
+    PixelOrigin origin;
     double maxRms = 0., pixelSigma = 0.;
     bool robust = true;
 };
@@ -58,6 +61,7 @@ void addOptions(OptionParser& parser, Options& o)
 {
     parser.add("start.yml", o.start, "the rig to start from").required();
     parser.add("--points", o.points, "what the cameras saw: [image,]id,u1,v1,u2,v2,...").required();
+    o.origin.addTo(parser);
     parser.add("--lengths", o.lengths, "known distances between points: [image,]id1,id2,length,std");
     parser.add("--free", o.bundle.free, "what the matches alone must tell; none: nothing").delimiter(',')
         .check(isMember(freeNames()));
@@ -113,7 +117,7 @@ int refract_bundle_main(int argc, char** argv)
                      {options.start, options.points, options.lengths, command.settings()});
         const Calibration file = readCalibration(options.start);
         warnOfContradictions(file, options.start, command);
-        const Matches matches = readMatches(options.points, file, options.start);
+        const Matches matches = readMatches(options.points, file, options.start, options.origin.yFrom);
         const GivenLengths lengths = options.lengths.empty() ? GivenLengths() : readLengths(options.lengths, options.points, matches);
         const BundleStart start = startOf(file, options.start, options.bundle);
         requireScale(start, options.start, matches, lengths);

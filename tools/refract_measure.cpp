@@ -74,6 +74,7 @@ struct Options
     bool compare = false, noWindow = false;
     std::string unit;
     ConditionsOptions conditions;
+    PixelOrigin origin;
 
     bool triangulates() const { return plane.empty() && (images.size() > 1 || !points.empty()); }
     //! From the pose of a target of known shape, the distances come out as they went in; other points have no known ones.
@@ -169,7 +170,8 @@ bool isPointPerId(const CsvTable& table)
 //! Points that are no target.
 std::vector<MeasuredView> readPoints(const Options& options, const Calibration& calibration)
 {
-    const CsvTable table = readPointTable(options.points, {"id", "u1", "v1"}, "a file of image points");
+    const CsvTable table = readPointTable(options.points, {"id", "u1", "v1"}, "a file of image points",
+                                          {options.origin.yFrom, calibration.imageSizes()});
     MeasuredView view;
     view.stem = stemOf(options.points);
     const int cameras = (int)calibration.cameras.size();
@@ -462,6 +464,7 @@ void addOptions(OptionParser& parser, Options& options)
     parser.add("calib.yml", options.calibration, "what refract_calib wrote").required();
     parser.add("IMAGE", options.images, "of camera 1, of camera 2, ...");
     parser.add("--points", options.points, "image points that are no target, in place of images: id,u1,v1,u2,v2,...");
+    options.origin.addTo(parser);
     options.target.addTo(parser, false);
     parser.add("--unit", options.unit, "unit of --square; what refract_calib had, or nothing")
         .check(isMember(unitNames()));

@@ -10,16 +10,21 @@ using tools::CsvTable;
 
 namespace {
 
-CsvTable read(const TemporaryFolder& f, const std::string& text)
+CsvTable read(const TemporaryFolder& f, const std::string& text, const tools::PixelOrigin& origin = tools::PixelOrigin())
 {
-    return tools::readPointTable(saved(f, "t.csv", text), {"id", "u1", "v1"}, "a table");
+    return tools::readPointTable(saved(f, "t.csv", text), {"id", "u1", "v1"}, "a table", origin);
 }
 
-std::string failure(const TemporaryFolder& f, const std::string& text)
+typedef std::vector<std::string> Cells;
+
+const char DEEPLABCUT[] = "scorer,DLC,DLC,DLC,DLC,DLC,DLC\nbodyparts,nose,nose,nose,tail,tail,tail\n"
+                          "coords,x,y,likelihood,x,y,likelihood\n";
+
+std::string failure(const TemporaryFolder& f, const std::string& text, const std::string& name = "")
 {
     try
     {
-        read(f, text);
+        name.empty() ? read(f, text) : tools::readPointTable(f/name, {"id"}, "a table");
         return "read";
     }
     catch (const tools::Failure& e)
@@ -52,5 +57,64 @@ TEST_CASE("Tables of points that cannot be read are refused in a sentence", "[fo
     CHECK_THAT(failure(f, heading + "0,-1,0,1,2\n"), Catch::Contains("line 2: cam_id must be the number of a camera, from 0"));
     CHECK_THAT(failure(f, heading), Catch::Contains("has no rows"));
     CHECK_THAT(failure(f, "pt1_cam1_X,pt1_cam1_Y\n1,2\n"), Catch::Contains("looks like a table of DLTdv or Argus"));
+    CHECK_THAT(failure(f, DEEPLABCUT), Catch::Contains("DeepLabCut's table of one camera"));
+    CHECK_THAT(failure(f, "", "cam%d.csv"), Catch::Contains("there is no file"));
+    saved(f, "cam1.csv", std::string(DEEPLABCUT) + "0,1,2,0.9,3,4\n");
+    CHECK_THAT(failure(f, "", "cam%d.csv"), Catch::Contains("line 4: 7 cells expected"));
+    saved(f, "cam1.csv", std::string(DEEPLABCUT) + "0,1,2,0.9,3,4,x\n");
+    CHECK_THAT(failure(f, "", "cam%d.csv"), Catch::Contains("line 4: 'x' is no number"));
+    saved(f, "cam1.csv", "scorer,a,a,a\nindividuals,m,m,m\n");
+    CHECK_THAT(failure(f, "", "cam%d.csv"), Catch::Contains("of several animals it is not read"));
+    saved(f, "cam1.csv", "2\n0 1 2 3 4 5 6 0\n");
+    CHECK_THAT(failure(f, "", "cam%d.csv"), Catch::Contains("has 1 of 2: is it cut short?"));
+    saved(f, "cam1.csv", "1\n0 1 2 3 4 5 6\n");
+    CHECK_THAT(failure(f, "", "cam%d.csv"), Catch::Contains("line 2: 8 numbers of a target"));
+    saved(f, "cam1.csv", "id,u1\n");
+    CHECK_THAT(failure(f, "", "cam%d.csv"), Catch::Contains("is neither a table of DeepLabCut"));
     CHECK_THAT(failure(f, "a,b\n1,2\n"), Catch::Contains("there is no column 'id'"));
+}
+
+TEST_CASE("Tracks of DLTdv and Argus count from 1, and from where it is said", "[foreign]")
+{
+    TemporaryFolder f;
+    const std::string text = "pt1_cam1_X,pt1_cam1_Y,pt1_cam2_X,pt1_cam2_Y,pt2_cam1_X,pt2_cam1_Y,pt2_cam2_X,pt2_cam2_Y\n"
+                             "11,21,31,41,NaN,NaN,7,8\n1,1,2,2,3,3,4,4\n";
+    const CsvTable top = read(f, text, {"top", {}});
+    CHECK(top.names() == Cells{"image", "id", "u1", "v1", "u2", "v2"});
+    REQUIRE(top.rows().size() == 4);
+    CHECK(top.rows()[0].cells == Cells{"1", "1", "10", "20", "30", "40"});
+    CHECK(top.rows()[1].cells == Cells{"1", "2", "", "", "6", "7"});
+    CHECK(top.rows()[2].cells == Cells{"2", "1", "0", "0", "1", "1"});
+    // The lowest row of an image of 100 rows is the last one, 99 from the first.
+    const CsvTable bottom = read(f, text, {"bottom", {cv::Size(640, 100), cv::Size(640, 480)}});
+    CHECK(bottom.rows()[2].cells == Cells{"2", "1", "0", "99", "1", "478"});
+    try
+    {
+        read(f, text, {"bottom", {cv::Size(640, 100)}});
+        CHECK(false);
+    }
+    catch (const tools::Failure& e)
+    {
+        CHECK_THAT(e.what(), Catch::Contains("the size of camera 2's image is not known"));
+    }
+}
+
+TEST_CASE("A file of each camera becomes one table: DeepLabCut's, and OpenPTV's targets", "[foreign]")
+{
+    TemporaryFolder f;
+    saved(f, "cam0.csv", std::string(DEEPLABCUT) + "0,10.5,20,0.99,5,6,0.3\n1,11,21,0.9,7,8,1\n");
+    saved(f, "cam1.csv", std::string(DEEPLABCUT) + "0,30,40,0.7,9,10,0.8\n1,,,,1,2,0.9\n");
+    const CsvTable table = tools::readPointTable(f/"cam%d.csv", {"id"}, "a table");
+    REQUIRE(table.rows().size() == 4);
+    CHECK(table.rows()[0].cells == Cells{"0", "nose", "10.5", "20", "30", "40"});
+    CHECK(table.rows()[1].cells == Cells{"0", "tail", "", "", "9", "10"});
+    CHECK(table.rows()[2].cells == Cells{"1", "nose", "11", "21", "", ""});
+    CHECK(table.rows()[3].cells == Cells{"1", "tail", "7", "8", "1", "2"});
+    // Of OpenPTV's pixels (0, 0) is a corner; -1 is a target without partners.
+    saved(f, "cam1.10001_targets", "3\n   0  10.5  20.25 7 3 3 900  1\n   1 5 6 7 3 3 900 -1\n   2 8 9 7 3 3 900 0\n");
+    saved(f, "cam2.10001_targets", "1\n   0  1.5  2.5 7 3 3 900  1\n");
+    const CsvTable targets = tools::readPointTable(f/"cam%d.10001_targets", {"id"}, "a table");
+    REQUIRE(targets.rows().size() == 2);
+    CHECK(targets.rows()[0].cells == Cells{"0", "1", "10", "19.75", "1", "2"});
+    CHECK(targets.rows()[1].cells == Cells{"0", "0", "7.5", "8.5", "", ""});
 }

@@ -29,13 +29,14 @@ void requireKnownColumns(const CsvTable& table, const std::string& path, const s
             throw Failure("'" + path + "' has the column '" + name + "', which means nothing here: " + what);
 }
 
-CsvTable openMatches(const std::string& path, int cameras, const std::string& startPath)
+CsvTable openMatches(const std::string& path, const Calibration& start, const std::string& startPath, const std::string& yFrom)
 {
+    const int cameras = (int)start.cameras.size();
     std::vector<std::string> required = {"id"};
     for (int c = 0; c < cameras; c++)
         required.insert(required.end(), {pixelColumn("u", c), pixelColumn("v", c)});
     const CsvTable table = readPointTable(path, required, format("a table of the pixels of the %d cameras of '%s'", cameras,
-                                                                 startPath.c_str()));
+                                                                 startPath.c_str()), {yFrom, start.imageSizes()});
     if (table.find(pixelColumn("u", cameras)) >= 0)
         throw Failure(format("'%s' has pixels of camera %d, but '%s' has %d cameras", path.c_str(), cameras + 1, startPath.c_str(),
                              cameras));
@@ -107,13 +108,13 @@ double Matches::usualStd() const
     return count ? std::sqrt(squares/count) : 0.;
 }
 
-Matches readMatches(const std::string& path, const Calibration& start, const std::string& startPath)
+Matches readMatches(const std::string& path, const Calibration& start, const std::string& startPath, const std::string& yFrom)
 {
     const int cameras = (int)start.cameras.size();
     if (cameras < 2)
         throw Failure("'" + startPath + "' has one camera: what one camera sees at one place has no depth. A rig of two cameras or "
                       "more is wanted; for a camera that moves, see refractiveBundleAdjust in doc/howto_bundle.md");
-    const CsvTable table = openMatches(path, cameras, startPath);
+    const CsvTable table = openMatches(path, start, startPath, yFrom);
     Matches matches;
     matches.pixels.resize(cameras);
     matches.stds.resize(table.find(stdColumn(0)) >= 0 ? cameras : 0);

@@ -33,8 +33,9 @@ struct Matches
 };
 
 /** matches.csv: [image,]id,u1,v1,u2,v2,...[,std1,std2,...]; refract_measure's points.csv will do. Throws Failure that names
-file and line, also where a pixel is outside its image, and where the cameras have nothing in common. */
-Matches readMatches(const std::string& path, const Calibration& start, const std::string& startPath);
+file and line, also where a pixel is outside its image, and where the cameras have nothing in common.
+@param yFrom see PixelOrigin */
+Matches readMatches(const std::string& path, const Calibration& start, const std::string& startPath, const std::string& yFrom = "");
 
 struct GivenLength
 {

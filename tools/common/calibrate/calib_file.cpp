@@ -314,6 +314,14 @@ KnownLens readLens(const std::string& filename, const std::string& name)
     return lens;
 }
 
+std::vector<cv::Size> Calibration::imageSizes() const
+{
+    std::vector<cv::Size> sizes;
+    for (const CameraCalibration& camera : cameras)
+        sizes.push_back(camera.camera->imageSize());
+    return sizes;
+}
+
 Calibration readCalibration(const std::string& filename)
 {
     const Rig rig = readRig(filename);

@@ -84,6 +84,7 @@ struct Calibration
     //! A camera at the end, where it is from camera 1.
     void add(const CameraCalibration& camera, const RigidTransform& cam_from_cam1 = RigidTransform());
     bool single() const { return cameras.size() == 1; }
+    std::vector<cv::Size> imageSizes() const;       //!< of each camera; empty ones where unknown
 };
 
 /** Throws cv::Exception or Failure that names the file; also if a lens comes without distortion_coefficients or the

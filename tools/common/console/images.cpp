@@ -234,6 +234,15 @@ void requireSize(const cv::Mat& image, const std::string& path, cv::Size calibra
                       "camera, not resized", image.cols, image.rows, calibrated.width, calibrated.height));
 }
 
+std::vector<std::string> numberedFiles(const std::string& pattern)
+{
+    const auto numbered = [&](int number) { return std::string(pattern).replace(pattern.find("%d"), 2, std::to_string(number)); };
+    std::vector<std::string> files;
+    for (int number = fs::exists(numbered(0)) ? 0 : 1; fs::is_regular_file(numbered(number)); number++)
+        files.push_back(numbered(number));
+    return files;
+}
+
 std::string stemOf(const std::string& path)
 {
     return fs::path(path).stem().string();

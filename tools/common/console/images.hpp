@@ -56,6 +56,9 @@ ImageFacts factsOf(const std::string& path);
 //! Throws Failure if the calibration's image size is known (not empty) and the image has another.
 void requireSize(const cv::Mat& image, const std::string& path, cv::Size calibrated);
 
+//! The files that there are with 0, 1, 2, ... or 1, 2, ... in place of %d, of programs that have a file for each camera.
+std::vector<std::string> numberedFiles(const std::string& pattern);
+
 //! File name without folder and extension.
 std::string stemOf(const std::string& path);
 

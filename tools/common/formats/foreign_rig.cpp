@@ -3,6 +3,7 @@
 
 #include "formats/foreign_rig.hpp"
 #include "console/failure.hpp"
+#include "console/images.hpp"
 #include "console/numbers.hpp"
 #include "formats/foreign_file.hpp"
 #include "formats/keyed_cameras.hpp"
@@ -212,17 +213,16 @@ void relateToFirst(ForeignRig& rig)
 }
 
 //! All files of a numbered name, each of one camera.
-std::optional<ForeignRig> readNumbered(const std::string& filename, size_t at)
+std::optional<ForeignRig> readNumbered(const std::string& pattern)
 {
-    const auto numbered = [&](int number) { return std::string(filename).replace(at, 2, std::to_string(number)); };
     std::optional<ForeignRig> rig;
-    for (int number = std::filesystem::exists(numbered(0)) ? 0 : 1; std::filesystem::exists(numbered(number)); number++)
+    for (const std::string& name : numberedFiles(pattern))
     {
-        const std::optional<ForeignRig> one = readOne(contentsOf(numbered(number)));
+        const std::optional<ForeignRig> one = readOne(contentsOf(name));
         if (!one)
             return {};
         if (one->cameras.size() != 1)
-            throw Failure("'" + numbered(number) + "' has several cameras: a numbered name is that of files of one");
+            throw Failure("'" + name + "' has several cameras: a numbered name is that of files of one");
         if (!rig)
             rig = ForeignRig();
         rig->format = one->format;
@@ -270,8 +270,7 @@ std::vector<double> leadingNumbers(const std::string& text, bool* whole)
 
 std::optional<ForeignRig> readForeignRig(const std::string& filename)
 {
-    const size_t number = filename.find("%d");
-    std::optional<ForeignRig> rig = number != std::string::npos ? readNumbered(filename, number) : readOne(contentsOf(filename));
+    std::optional<ForeignRig> rig = filename.find("%d") != std::string::npos ? readNumbered(filename) : readOne(contentsOf(filename));
     if (!rig)
         return {};
     relateToFirst(*rig);

@@ -3,80 +3,257 @@
 
 #include "formats/point_table.hpp"
 #include "console/failure.hpp"
+#include "console/images.hpp"
+#include "console/numbers.hpp"
+#include "console/options.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <map>
+#include <sstream>
 
 namespace tools {
 
 namespace {
+
+const size_t MOST_CAMERAS = 1000;
+const double CORNER = 0.5;          // where pixels count from the corner of the first
+
+//! A point in one camera, as cells.
+struct Observation
+{
+    std::string frame, point;
+    size_t camera;
+    std::string u, v;               //!< empty: not seen
+    int line;
+};
+
+//! One row a point.
+CsvTable tableOf(const std::string& path, const std::vector<Observation>& all)
+{
+    std::vector<std::string> names = {"image", "id"};
+    size_t cameras = 0;
+    for (const Observation& o : all)
+        cameras = std::max(cameras, o.camera + 1);
+    for (size_t c = 1; c <= cameras; c++)
+        names.insert(names.end(), {"u" + std::to_string(c), "v" + std::to_string(c)});
+    std::vector<CsvTable::Row> rows;
+    std::map<std::pair<std::string, std::string>, size_t> places;
+    std::vector<std::vector<char>> seenBy;
+    for (const Observation& o : all)
+    {
+        const auto [place, isNew] = places.insert({{o.frame, o.point}, rows.size()});
+        if (isNew)
+        {
+            rows.push_back({o.line, std::vector<std::string>(names.size())});
+            rows.back().cells[0] = o.frame;
+            rows.back().cells[1] = o.point;
+            seenBy.push_back(std::vector<char>(cameras, 0));
+        }
+        if (seenBy[place->second][o.camera]++)
+            throw Failure("'" + path + "' line " + std::to_string(o.line) + ": camera " + std::to_string(o.camera) + " saw the point "
+                          + o.point + " of frame " + o.frame + " in an earlier line already");
+        rows[place->second].cells[2 + 2*o.camera] = o.u;
+        rows[place->second].cells[3 + 2*o.camera] = o.v;
+    }
+    return CsvTable(path, names, rows);
+}
+
+//! A coordinate that counts from elsewhere, where it was seen.
+std::string moved(double pixel) { return pixel == pixel ? cv::format("%.17g", pixel) : ""; }
 
 //! How a program names the columns of an observation.
 struct LongForm
 {
     const char *frame, *camera, *point, *u, *v;
 };
-const LongForm LONG_FORMS[] = {{"frame", "cam_id", "pt_idx", "x", "y"}};
+const LongForm OPENLPT = {"frame", "cam_id", "pt_idx", "x", "y"};
 
-bool has(const std::vector<std::string>& names, const char* name) { return std::find(names.begin(), names.end(), name) != names.end(); }
-
-//! From 0.
 size_t cameraOf(const CsvTable& table, const CsvTable::Row& row, const LongForm& form)
 {
-    const double MOST = 1000.;
     const double camera = table.number(row, form.camera);
-    if (!(camera >= 0. && camera < MOST) || camera != std::floor(camera))
+    if (!(camera >= 0. && camera < (double)MOST_CAMERAS) || camera != std::floor(camera))
         throw Failure(table.where(row) + ": " + form.camera + " must be the number of a camera, from 0");
     return (size_t)camera;
 }
 
-CsvTable oneRowAPoint(const std::string& path, const CsvTable& table, const LongForm& form)
+CsvTable readLongForm(const std::string& path, const LongForm& form)
 {
-    std::vector<std::string> names = {"image", "id"};
-    size_t cameras = 0;
+    const CsvTable table(path, {form.frame, form.camera, form.point, form.u, form.v}, "a table of observations");
+    std::vector<Observation> all;
     for (const CsvTable::Row& row : table.rows())
-        cameras = std::max(cameras, cameraOf(table, row, form) + 1);
-    for (size_t c = 1; c <= cameras; c++)
-        names.insert(names.end(), {"u" + std::to_string(c), "v" + std::to_string(c)});
-    std::vector<CsvTable::Row> rows;
-    std::map<std::pair<std::string, std::string>, size_t> places;
-    for (const CsvTable::Row& row : table.rows())
-    {
-        const std::string &frame = table.text(row, form.frame), &point = table.text(row, form.point);
-        const auto [place, isNew] = places.insert({{frame, point}, rows.size()});
-        if (isNew)
+        all.push_back({table.text(row, form.frame), table.text(row, form.point), cameraOf(table, row, form),
+                       table.textOrNone(row, form.u), table.textOrNone(row, form.v), row.line});
+    return tableOf(path, all);
+}
+
+//! pt3_cam1_X: 3 and 1; false: it is another name.
+bool isTrack(const std::string& name, int& point, size_t& camera)
+{
+    size_t number = 0;
+    char axis = 0;
+    int end = 0;
+    const bool is = std::sscanf(name.c_str(), "pt%d_cam%zu_%c%n", &point, &number, &axis, &end) == 3 && end == (int)name.size()
+        && std::strchr("Xx", axis) && point >= 0 && number >= 1 && number <= MOST_CAMERAS;
+    camera = number - 1;
+    return is;
+}
+
+//! The image's height where y counts from the bottom.
+double heightOf(const std::string& path, const PixelOrigin& origin, size_t camera)
+{
+    if (origin.yFrom.empty())
+        throw Failure("'" + path + "' looks like a table of DLTdv or Argus, whose y counts from the top of the image in some versions, and "
+                      "from its bottom in others: say --y-from=top or --y-from=bottom");
+    if (origin.yFrom == "bottom" && (camera >= origin.images.size() || origin.images[camera].empty()))
+        throw Failure("'" + path + "': y counts from the bottom, and the size of camera " + std::to_string(camera + 1)
+                      + "'s image is not known: add it to the calibration (image_width, image_height)");
+    return origin.yFrom == "bottom" ? origin.images[camera].height : 0.;
+}
+
+CsvTable readTracks(const std::string& path, const PixelOrigin& origin)
+{
+    const CsvTable table(path, {}, "a table of tracks");
+    std::vector<Observation> all;
+    for (size_t r = 0; r < table.rows().size(); r++)
+        for (const std::string& name : table.names())
         {
-            rows.push_back({row.line, std::vector<std::string>(names.size())});
-            rows.back().cells[0] = frame;
-            rows.back().cells[1] = point;
+            int point;
+            size_t camera;
+            if (!isTrack(name, point, camera))
+                continue;
+            const std::string y = name.substr(0, name.size() - 1) + (name.back() == 'X' ? "Y" : "y");
+            const cv::Point2d pixel = table.pixelOrNone(table.rows()[r], name, y);
+            const double height = heightOf(path, origin, camera);
+            all.push_back({std::to_string(r + 1), std::to_string(point), camera, moved(pixel.x - 1),
+                           moved(height > 0 ? height - pixel.y : pixel.y - 1), table.rows()[r].line});
         }
-        const size_t at = 2 + 2*cameraOf(table, row, form);
-        std::string* const cells = &rows[place->second].cells[at];
-        if (!cells[0].empty() || !cells[1].empty())
-            throw Failure(table.where(row) + ": camera " + table.text(row, form.camera) + " saw the point " + point + " of frame " + frame
-                          + " in an earlier line already");
-        cells[0] = table.textOrNone(row, form.u);
-        cells[1] = table.textOrNone(row, form.v);
+    return tableOf(path, all);
+}
+
+std::vector<std::string> linesOf(const std::string& path)
+{
+    std::ifstream in(path);
+    std::vector<std::string> lines;
+    for (std::string line; std::getline(in, line); )
+        lines.push_back(line.substr(0, line.find_last_not_of("\r\n ") + 1));
+    return lines;
+}
+
+std::vector<std::string> split(const std::string& line)
+{
+    std::vector<std::string> cells;
+    std::istringstream in(line);
+    for (std::string cell; std::getline(in, cell, ','); )
+        cells.push_back(cell);
+    return cells;
+}
+
+double numberIn(const std::string& path, size_t line, const std::string& cell)
+{
+    double number = NAN;
+    if (!cell.empty() && cell != "nan" && cell != "NaN" && !parseNumber(cell, number))
+        throw Failure("'" + path + "' line " + std::to_string(line + 1) + ": '" + cell + "' is no number");
+    return number;
+}
+
+bool isDeepLabCut(const std::vector<std::string>& lines) { return !lines.empty() && lines[0].compare(0, 7, "scorer,") == 0; }
+
+//! Three lines of heading: scorer, bodyparts, coords; then one row a frame: its number, and x, y, likelihood of each part.
+void addDeepLabCut(const std::string& path, const std::vector<std::string>& lines, size_t camera, std::vector<Observation>& all)
+{
+    const double LIKELY = 0.6;          // AniPose's own default
+    const std::vector<std::string> parts = split(lines.size() > 1 ? lines[1] : ""), coords = split(lines.size() > 2 ? lines[2] : "");
+    if (parts.empty() || parts[0] != "bodyparts" || coords.size() != parts.size() || coords[0] != "coords")
+        throw Failure("'" + path + "' looks like a table of DeepLabCut, but its second and third line must begin with 'bodyparts' and "
+                      "'coords' (of several animals it is not read)");
+    for (size_t r = 3; r < lines.size(); r++)
+    {
+        const std::vector<std::string> cells = split(lines[r] + ",");
+        if (cells.size() != parts.size())
+            throw Failure("'" + path + "' line " + std::to_string(r + 1) + ": " + std::to_string(parts.size())
+                          + " cells expected, as the heading has names; is the file cut short?");
+        for (size_t i = 1; i + 2 < parts.size(); i += 3)
+        {
+            const double likelihood = numberIn(path, r, cells[i + 2]);
+            const bool isSeen = !(likelihood < LIKELY);
+            all.push_back({cells[0], parts[i], camera, isSeen ? moved(numberIn(path, r, cells[i])) : "",
+                           isSeen ? moved(numberIn(path, r, cells[i + 1])) : "", (int)r + 1});
+        }
     }
-    return CsvTable(path, names, rows);
+}
+
+//! The number of targets, then a line each: number, x, y, three sizes, sum of grey levels, number of correspondence (-1: none).
+bool isTargets(const std::vector<std::string>& lines)
+{
+    double count;
+    return !lines.empty() && parseNumber(lines[0].substr(std::min(lines[0].find_first_not_of(' '), lines[0].size())), count);
+}
+
+void addTargets(const std::string& path, const std::vector<std::string>& lines, size_t camera, std::vector<Observation>& all)
+{
+    const size_t CELLS = 8;
+    const size_t count = (size_t)std::max(0., numberIn(path, 0, lines[0].substr(lines[0].find_first_not_of(' '))));
+    if (lines.size() != count + 1)
+        throw Failure("'" + path + "' looks like OpenPTV's targets, but has " + std::to_string(lines.size() - 1) + " of "
+                      + std::to_string(count) + ": is it cut short?");
+    for (size_t r = 1; r < lines.size(); r++)
+    {
+        std::istringstream in(lines[r]);
+        double cells[CELLS];
+        for (double& cell : cells)
+            if (!(in >> cell))
+                throw Failure("'" + path + "' line " + std::to_string(r + 1) + ": 8 numbers of a target are expected");
+        if (cells[CELLS - 1] >= 0)
+            all.push_back({"0", cv::format("%.0f", cells[CELLS - 1]), camera, moved(cells[1] - CORNER), moved(cells[2] - CORNER),
+                           (int)r + 1});
+    }
+}
+
+CsvTable readFilesOfCameras(const std::string& pattern)
+{
+    const std::vector<std::string> files = numberedFiles(pattern);
+    if (files.empty())
+        throw Failure("there is no file '" + pattern + "' with 0 or 1 in place of %d");
+    std::vector<Observation> all;
+    for (size_t c = 0; c < files.size(); c++)
+    {
+        const std::vector<std::string> lines = linesOf(files[c]);
+        if (isDeepLabCut(lines))
+            addDeepLabCut(files[c], lines, c, all);
+        else if (isTargets(lines))
+            addTargets(files[c], lines, c, all);
+        else
+            throw Failure("'" + files[c] + "' is neither a table of DeepLabCut (scorer, bodyparts, coords) nor OpenPTV's targets, the files "
+                          "of one camera each that are read");
+    }
+    return tableOf(pattern, all);
 }
 
 } // namespace
 
-CsvTable readPointTable(const std::string& path, const std::vector<std::string>& required, const std::string& what)
+void PixelOrigin::addTo(OptionParser& parser)
 {
+    parser.add("--y-from", yFrom, "top or bottom: where y counts from in --points of DLTdv or Argus").check(isMember({"top", "bottom"}));
+}
+
+CsvTable readPointTable(const std::string& path, const std::vector<std::string>& required, const std::string& what,
+                        const PixelOrigin& origin)
+{
+    if (path.find("%d") != std::string::npos)
+        return readFilesOfCameras(path);
     const std::vector<std::string> heading = headingOf(path);
-    for (const LongForm& form : LONG_FORMS)
-    {
-        const std::vector<std::string> all = {form.frame, form.camera, form.point, form.u, form.v};
-        if (std::all_of(all.begin(), all.end(), [&](const std::string& name) { return has(heading, name.c_str()); }))
-            return oneRowAPoint(path, CsvTable(path, all, what), form);
-    }
-    if (has(heading, "pt1_cam1_X"))
-        throw Failure("'" + path + "' looks like a table of DLTdv or Argus, whose y counts from the bottom of the image in some versions, "
-                      "and whose pixels count from 1 in some: write it as image,id,u1,v1,u2,v2,..., the middle of the upper left pixel "
-                      "being (0, 0)");
+    const auto has = [&](const char* name) { return std::find(heading.begin(), heading.end(), name) != heading.end(); };
+    if (has(OPENLPT.frame) && has(OPENLPT.camera) && has(OPENLPT.point) && has(OPENLPT.u) && has(OPENLPT.v))
+        return readLongForm(path, OPENLPT);
+    int point;
+    size_t camera;
+    if (std::any_of(heading.begin(), heading.end(), [&](const std::string& name) { return isTrack(name, point, camera); }))
+        return readTracks(path, origin);
+    if (has("scorer"))
+        throw Failure("'" + path + "' looks like DeepLabCut's table of one camera: give those of all, with %d in place of the camera's "
+                      "number");
     return CsvTable(path, required, what);
 }
 
