@@ -158,3 +158,83 @@ TEST_CASE("Cameras behind one wall, the second nearer to it than the first was t
             }
         }
 }
+
+namespace {
+
+//! A camera before boards in water, of which the images tell the normal about as well as its prior.
+struct KnownNormal
+{
+    explicit KnownNormal(Random& random, int cameras = 1) : truth(makeRig(cameras, std::vector<int>(cameras, 0), 1.333)),
+        scene(makeRigScene(truth, ObjectViews(3, board()), random, 0.5)) {}
+
+    //! @param off of the given normal, radians about two axes
+    RigCall call(const Vec2d& off, double deviation) const
+    {
+        RigCall call(truth, scene, false);
+        for (size_t c = 0; c < call.cameras.size(); c++)
+        {
+            GlassWindow window = call.cameras[c]->window();
+            const Vec3d n = truth.cameras[c]->window().normal;
+            const Vec3d across = normalize(n.cross(Vec3d(0, 1, 0)));
+            window.normal = normalize(n + off[0]*across + off[1]*n.cross(across));
+            call.cameras[c]->setWindow(window);
+        }
+        Mat prior(16, 16, CV_64F, Scalar(0));
+        for (int i = NORMAL; i < NORMAL + 3; i++)
+            prior.at<double>(i, i) = deviation*deviation;
+        call.run(GLASS_FREE_DISTANCE, std::vector<Mat>(call.cameras.size(), prior));
+        return call;
+    }
+
+    static const int NORMAL = 8;
+    const RigTruth truth;
+    const RigScene scene;
+};
+
+} // namespace
+
+TEST_CASE("A normal known with a covariance is estimated within it", "[known][prior]")
+{
+    CAPTURE(seed());
+    Random random(3350);
+    for (int cameras : { 1, 2 })        // behind one window
+    {
+        CAPTURE(cameras);
+        const KnownNormal k(random, cameras);
+        const double DEGREE = CV_PI/180;
+        const RigCall unknown = k.call(Vec2d(), 0), roughly = k.call(Vec2d(), 100*DEGREE), known = k.call(Vec2d(), 0.01*DEGREE);
+        const int n = KnownNormal::NORMAL;
+        CHECK(roughly.deviations.at<double>(n) == Approx(unknown.deviations.at<double>(n)).epsilon(0.02));
+        CHECK(known.deviations.at<double>(n) < 0.2*unknown.deviations.at<double>(n));
+        // Given with that certainty, it is as given, right or wrong.
+        const RigCall wrong = k.call(Vec2d(0.2*DEGREE, 0), 1e-4*DEGREE);
+        const double angle = std::acos(wrong.cameras[0]->window().normal.dot(k.truth.cameras[0]->window().normal))/DEGREE;
+        CHECK(angle == Approx(0.2).margin(0.005));
+    }
+}
+
+TEST_CASE("Errors of a normal that is known so far are what is stated", "[known][prior]")
+{
+    const int TRIALS = 40;
+    const double DEVIATION = 0.3*CV_PI/180;
+    double errors[2] = {}, stated[2] = {}, alone = 0;
+    CAPTURE(seed());
+    for (int trial = 0; trial < TRIALS; trial++)
+    {
+        Random random(3360 + trial);
+        const KnownNormal k(random);
+        const RigCall call = k.call(Vec2d(random.normal(DEVIATION), random.normal(DEVIATION)), DEVIATION);
+        for (int i = 0; i < 2; i++)
+        {
+            errors[i] += std::pow(call.cameras[0]->window().normal[i] - k.truth.cameras[0]->window().normal[i], 2);
+            stated[i] += std::pow(call.deviations.at<double>(KnownNormal::NORMAL + i), 2);
+        }
+        alone += trial ? 0 : std::pow(k.call(Vec2d(), 0).deviations.at<double>(KnownNormal::NORMAL), 2);
+    }
+    const double x = std::sqrt(errors[0]/stated[0]), y = std::sqrt(errors[1]/stated[1]);
+    std::cout << "[numbers] normal known to 0.3 degrees, error over stated: x " << x << ", y " << y << "; stated "
+              << std::sqrt(stated[0]/TRIALS)*180/CV_PI << " degrees, " << std::sqrt(alone)*180/CV_PI << " from the images alone" << std::endl;
+    CHECK(x == Approx(1).margin(0.3));
+    CHECK(y == Approx(1).margin(0.3));
+    CHECK(stated[0]/TRIALS < std::min(alone, DEVIATION*DEVIATION));
+}

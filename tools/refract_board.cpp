@@ -74,8 +74,9 @@ int refract_board_main(int argc, char** argv)
         requireExtension(options.out);
         checkOutputs({{"--out", options.out, OUTPUT_TEXT}}, {command.settings()});
         const BoardPage page(target, millimetres, options.paper);
-        page.write(options.out, {asOptions(options, target.tagSpacing()), cv::format("Square: %g mm. The ruler is 100 mm long: print at 100 %%, not "
-                                                                "fitted to the page, and measure it.", square)});
+        page.write(options.out, {asOptions(options, target.tagSpacing()),
+                                 cv::format("Square: %g mm. The ruler is 100 mm long: print at 100 %%, not fitted to the page, and measure "
+                                            "it.", square)});
         if (!command.quiet())
             std::cout << options.out << ": " << page.paperName()
                       << cv::format(", board %g x %g mm; print at 100 %% and measure the ruler", page.board().width, page.board().height)

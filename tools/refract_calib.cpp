@@ -94,6 +94,8 @@ struct Options
     std::string channel;
     double watchGain = 0.;
     GivenStdOptions std;
+    std::vector<std::string> normals;
+    double normalStd = 0.;
     std::vector<std::string> free;
     bool unpaired = false, sharedWindow = false;
     bool crossValidation = true, robust = true;
@@ -154,6 +156,10 @@ Options parseOptions(Command& command)
         .captureDefault();
     o.window.addTo(parser, "where it is needed and not given, it is estimated");
     o.std.addTo(parser);
+    parser.add("--normal", o.normals, "what is known of the normal of a flat window: X,Y,Z in the camera's frame; once for all cameras, or "
+        "once for each").oneAtATime();
+    parser.add("--normal-std", o.normalStd, "how well, one standard deviation about each of two axes, degrees: the normal is estimated "
+        "within it").needs(parser.get("--normal")).check(moreThanZero());
     parser.add("--channel", o.channel, "of colour images, in which the target is looked for, and for which the calibration is "
         "valid (default: the brightness of all)").check(isMember({"red", "green", "blue"}));
     parser.add("--free", o.free, "what to estimate beside the normal, or the centre").delimiter(',')
@@ -259,8 +265,29 @@ void takeStd(const Options& o, const Target* target, RigOptions& rig)
     given.millimetre = 1./millimetresIn(o.unit);
     given.flags = rig.flags;
     rig.std = o.std.of(given);
+    rig.std.normal = o.normalStd*CV_PI/180.;
     o.window.requireBow(rig.std, rig.flags);
     rig.window = withEstimated(rig.window, rig.std, rig.flags);
+}
+
+void takeNormals(const Options& o, RigOptions& rig)
+{
+    if (o.normals.empty())
+        return;
+    if (isRound(rig.window))
+        throw Failure("--normal is of a flat window; where a " + o.window.shape() + " is, --center says, with --center-std");
+    if (!(o.normalStd > 0.))
+        throw Failure("--normal=" + o.normals[0] + ": say how well it is known, --normal-std=1 for a degree");
+    if (o.normals.size() > 1 && (int)o.normals.size() != o.images.cameraCount())
+        throw Failure(format("--normal is given %zu times, and there are %d cameras: give it once for all, or once for each",
+                             o.normals.size(), o.images.cameraCount()));
+    for (const std::string& text : o.normals)
+    {
+        const cv::Vec3d n = parseVector(text, "--normal");
+        if (!(n[2] > 0.))
+            throw Failure("--normal=" + text + ": it points from the camera to the scene, so that its z is more than 0");
+        rig.normals.push_back(cv::normalize(n));
+    }
 }
 
 //! The window as far as it is known, and what is to be found; refuses what no image can tell.
@@ -278,6 +305,7 @@ void readWindow(const Options& o, RigOptions& rig)
         throw Failure("--max-normal-std is of a flat window, and a " + o.window.shape() + " has no normal: limit the error of points, "
                       "--max-error-at");
     rig.windows = readWindowsOfCameras(o);
+    takeNormals(o, rig);
     if (!o.poses.empty())
         rig.flags |= GLASS_USE_POSES;
     if (rig.window.innerIndex != rig.window.outerIndex && !o.window.isDistanceSaid() && !isRound(rig.window))

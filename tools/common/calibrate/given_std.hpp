@@ -38,6 +38,7 @@ struct GivenStd
     Std wedge;                          //!< of each of its two angles, radians
     Std radius;                         //!< of a dome's or tube's inner face
     Std center;                         //!< of a dome's centre, per axis; 0: nothing is known of it
+    Std normal;                         //!< of a flat window's, radians, about each of two axes; 0: nothing is known of it
     Std bow;                            //!< of a pane, mm of sag per metre
     double curvature = 0.;              //!< the same, over the unit of lengths
     Std scale;                          //!< of the targets (a board's square), relative

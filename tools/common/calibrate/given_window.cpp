@@ -40,6 +40,8 @@ void makeRelativeToThinnest(GivenWindow& given)
     }
 }
 
+} // namespace
+
 cv::Vec3d parseVector(const std::string& text, const char* option)
 {
     const std::vector<double> numbers = parseNumbers(text, option);
@@ -48,8 +50,6 @@ cv::Vec3d parseVector(const std::string& text, const char* option)
                       "z ahead)");
     return cv::Vec3d(numbers.data());
 }
-
-} // namespace
 
 bool GivenWindow::hasMaterials() const
 {
@@ -264,6 +264,7 @@ void putVariances(const GivenStd& std, const ParameterColumns& at, cv::Mat& cova
     for (int i = 0; i < at.layers; i++)
         put(at.index + i, 1, std.indexOf(i));
     put(at.wedge, at.curvature - at.wedge, std.wedge);
+    put(at.normal, 3, std.normal);
     put(at.distance, 1, std.distance);
     put(at.radius, 1, std.radius);
     put(at.center, 3, std.center);

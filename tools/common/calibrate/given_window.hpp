@@ -53,6 +53,9 @@ private:
     double radius_ = 0., wavelength_ = 0., distance_ = 0.;
 };
 
+//! X,Y,Z in a camera's frame.
+cv::Vec3d parseVector(const std::string& text, const char* option);
+
 //! What --free may name of lenses and windows, wherever windows are, and its flags.
 const std::map<std::string, int>& freeFlags();
 

@@ -65,6 +65,8 @@ void startAtKnown(RigModel& rig)
         }
         if (isKnown(at.outerIndex))
             window.outerIndex = known.window.outerIndex;
+        if (isKnown(at.normal))
+            window.normal = known.window.normal;
         if (isKnown(at.distance))
             window.distance = known.window.distance;
         if (isKnown(at.radius))
@@ -97,6 +99,9 @@ int countPriors(const RigModel& rig)
         const bool ownsWindow = rig.ownsWindow((int)c);
         for (int i = 0; i < covariance.rows && (i < lens || ownsWindow); i++)
             count += covariance.at<double>(i, i) > 0;
+        const ParameterColumns at = columnsOf(*rig.cameras[c]);
+        if (ownsWindow && covariance.rows > lens && at.has(at.normal) && covariance.at<double>(at.normal, at.normal) > 0)
+            count--;                // a direction of three numbers has two
     }
     return count;
 }

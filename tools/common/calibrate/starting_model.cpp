@@ -195,7 +195,7 @@ void startExtrinsics(const RigData& data, bool posesKnown, RigModel& rig)
 KnownCamera knownOf(const RefractiveCamera& camera, const RigOptions& options, int c)
 {
     const int lens = camera.lensParameters().rows;
-    KnownCamera known{camera.lensParameters(), options.window, Mat()};
+    KnownCamera known{camera.lensParameters(), options.windowOf(c), Mat()};
     // Without a covariance the lens of a file is exact, unless the caller wants it free.
     const bool lensKnown = options.known[c] && !(options.knownCovariance[c].empty() && (options.flags & GLASS_FREE_INTRINSICS));
     if (!lensKnown && !options.std.ofWindow())
@@ -267,6 +267,14 @@ Mat targetCovarianceOf(const RigData& data, const RigModel& rig, const GivenStd&
     return covariance;
 }
 
+GlassWindow RigOptions::windowOf(int camera) const
+{
+    GlassWindow own = window;
+    if (!normals.empty())
+        own.normal = normals[std::min((size_t)camera, normals.size() - 1)];
+    return own;
+}
+
 bool RigOptions::hasMaterials() const
 {
     return GivenWindow{window, layers, inner, outer}.hasMaterials();
@@ -309,7 +317,7 @@ RigModel startModel(const RigData& data, const RigOptions& given, std::vector<Le
             throw Failure(format("--camera%s was calibrated on %dx%d images, but the images here are %dx%d", cameraSuffix(c).c_str(),
                                  known.width, known.height, data.imageSize[c].width, data.imageSize[c].height));
         checkLens(data, copyWithWindow(lens, GlassWindow()), c, lensSources[c]);
-        rig.add(copyWithWindow(lens, options.window));
+        rig.add(copyWithWindow(lens, options.windowOf(c)));
         rig.cameras.back()->setImageSize(data.imageSize[c]);
     }
     rig.windows = options.windows;
@@ -317,8 +325,8 @@ RigModel startModel(const RigData& data, const RigOptions& given, std::vector<Le
     if (options.std.isDistanceOpen)
     {
         options = withOpenDistance(data, rig, options);
-        for (Ptr<RefractiveCamera>& camera : rig.cameras)
-            camera = copyWithWindow(camera, options.window);
+        for (int c = 0; c < data.cameraCount; c++)
+            rig.cameras[c] = copyWithWindow(rig.cameras[c], options.windowOf(c));
     }
     for (int c = 0; c < data.cameraCount; c++)
         rig.known.push_back(knownOf(*rig.cameras[c], options, c));

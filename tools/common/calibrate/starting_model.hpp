@@ -24,6 +24,10 @@ struct RigOptions
     GivenIndex inner = {}, outer = {};                      //!< the same of the media
     Channel channel = BRIGHTNESS;                           //!< of colour images, in which the points were found
 
+    std::vector<cv::Vec3d> normals = {};                    //!< that are known within std.normal: of all cameras, or of each; empty: none
+
+    //! The window of a camera, as far as it is known.
+    cv::refract::GlassWindow windowOf(int camera) const;
     bool hasMaterials() const;                              //!< that are named
 };
 

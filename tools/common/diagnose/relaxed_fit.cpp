@@ -217,7 +217,10 @@ RelaxedFit::RelaxedFit(const RigData& data, const Fit& fit, bool posesKnown, dou
         const GlassWindow now = rig_.cameras[c]->window();
         window.shape = now.shape;
         window.wedge.resize(now.wedge.size());
-        window.normal = now.normal;
+        const bool isNormalKnown = known.covariance.rows > at.lensCount && at.has(at.normal)
+            && known.covariance.at<double>(at.normal - at.lens, at.normal - at.lens) > 0;
+        if (!isNormalKnown)
+            window.normal = now.normal;
         window.axis = now.axis;
         if (window.shape == WINDOW_TUBE)
             window.center = now.center;

@@ -65,6 +65,8 @@ void addShape(const RigCalibration& c, GivenRows& rows)
     const GivenStd& std = c.options.std;
     if (isRound(window) && !(c.options.flags & GLASS_FREE_RADIUS))
         rows.add("radius of the inner face", format("%g %s", window.radius, c.unit.c_str()), std.radius, " " + c.unit);
+    for (const cv::Vec3d& n : c.options.normals)
+        rows.add("normal", format("(%.4g, %.4g, %.4g)", n[0], n[1], n[2]), std.normal, " degrees", 180./CV_PI);
     if (std.center > 0.)
         rows.add("centre", format("(%g, %g, %g) %s", window.center[0], window.center[1], window.center[2], c.unit.c_str()), std.center,
                  " " + c.unit);

@@ -60,7 +60,7 @@ without a window.
   a combination is known. A variance of 0: the quantity is exactly as given; flags may still free a window, and all that
   rigCovariance is of. A variance of NaN: nothing is known of it, and its row and column are not read (what is propagated must
   be known). `lengthScaleStd`, and the standard deviation of a length, may be NaN, too. Of `cameraCovariances` the blocks of
-  the lens, of the center and axis of a dome or tube, of media, and of R and T are read, not the correlations between these:
+  the lens, of the normal or the center and axis, of media, and of R and T are read, not the correlations between these:
   `rigCovariance` has them all.
 - **Messages**: the library writes none. While it solves, what Ceres' logger (glog) has below FATAL is muted, in all threads.
 
@@ -1413,8 +1413,8 @@ for a pose that is exact; noArray(): all are exact.
 @param cameraCovariances prior knowledge of each camera, from an earlier calibration or a data sheet: an LxL covariance (see
 the conventions) of its L lens parameters, or a PxP one of its P parameters in the order of stdDeviations; empty: none. A
 parameter with a variance is estimated with this prior, whose mean is the initial value. A lens parameter with the variance 0
-is exact, with any flags. With NaN the flags decide, also for window parameters without a variance. Rows of a normal are not
-used; those of a center, and of a tube's axis, are. noArray(): no prior knowledge. It may also be a (P+6)x(P+6) one, of the
+is exact, with any flags. With NaN the flags decide, also for window parameters without a variance. Of a normal what is along
+it does not count: sigma^2 times the identity is sigma radians about any axis. noArray(): none. It may be (P+6)x(P+6), of the
 camera's parameters, then of its rvec and T (rows and columns of camera 1: not used). With a variance they are estimated, with
 this prior; with the variance 0 exact, with any flags. An emitter of which only one coordinate is known needs this: of a
 straight sheet of light the images determine the plane, three of the six.

@@ -130,10 +130,18 @@ void Problem::setPriorMeans(const Rig& given, const std::vector<Pose>& poses)
             const Camera& camera = given.cameras[block.index];
             const int first = block.kind == ParameterBlock::LENS ? 0 : camera.lensCount() +
                 (block.kind == ParameterBlock::PLACE ? block.at.normal : block.at.media);
-            if (block.kind != ParameterBlock::LENS && !given.owns(block.index))
+            const bool isElsewhere = block.kind != ParameterBlock::LENS && !given.owns(block.index);
+            if (isElsewhere && (block.kind != ParameterBlock::PLACE || hasCenter(block.at.shape)))
                 continue;           // the search gave the window to another camera
             const std::vector<double> all = camera.parameters();
             mean.assign(all.begin() + first, all.begin() + first + block.values.size());
+            if (isElsewhere)        // the given normal, as the camera sees it that has it now
+            {
+                const int from = given.owner[block.index];
+                const Vec3d n = rotationMatrix(rig_.extrinsics[block.index].rvec)*(rotationMatrix(rig_.extrinsics[from].rvec).t()
+                    *given.cameras[from].layers().normal());
+                mean.assign(n.val, n.val + 3);
+            }
         }
         for (int i = 0; i < (int)mean.size(); i++)
             if (std::isfinite(mean[i]))         // else nothing is known of it
@@ -192,21 +200,20 @@ void Problem::addCameraBlocks(int c, const CameraPrior& prior, int flags)
     const std::vector<String> names = camera.parameterNames();
     // Of a camera without a window the flags of the others' windows mean nothing.
     const std::vector<bool> isFree = camera.refracts() ? freeWindowParameters(at, flags) : std::vector<bool>(at.count, false);
-    const auto add = [&](ParameterBlock::Kind kind, int first, const std::vector<bool>& free, bool mayHavePrior)
+    const auto add = [&](ParameterBlock::Kind kind, int first, const std::vector<bool>& free)
     {
         const int size = (int)free.size();
         ParameterBlock& block = addBlock(kind, c, std::vector<double>(all.begin() + first, all.begin() + first + size),
                                          std::vector<String>(names.begin() + first, names.begin() + first + size), free);
-        if (mayHavePrior && first + size <= prior.covariance.cols())
+        if (first + size <= prior.covariance.cols())
             block.setPrior(prior.covariance.block(first, first, size, size));
     };
     const int lens = camera.lensCount();
-    add(ParameterBlock::LENS, 0, freeLens(camera, flags), true);
+    add(ParameterBlock::LENS, 0, freeLens(camera, flags));
     if (!rig_.owns(c))
         return;
-    add(ParameterBlock::PLACE, lens + at.normal, std::vector<bool>(at.media - at.normal, camera.refracts() && !(flags & GLASS_FIX_NORMAL)),
-        hasCenter(at.shape));
-    add(ParameterBlock::MEDIA, lens + at.media, std::vector<bool>(isFree.begin() + at.media, isFree.end()), true);
+    add(ParameterBlock::PLACE, lens + at.normal, std::vector<bool>(at.media - at.normal, camera.refracts() && !(flags & GLASS_FIX_NORMAL)));
+    add(ParameterBlock::MEDIA, lens + at.media, std::vector<bool>(isFree.begin() + at.media, isFree.end()));
 }
 
 ParameterBlock& Problem::addBlock(ParameterBlock::Kind kind, int index, const std::vector<double>& values,
