@@ -233,7 +233,8 @@ TEST_CASE("Errors of a normal that is known so far are what is stated", "[known]
     }
     const double x = std::sqrt(errors[0]/stated[0]), y = std::sqrt(errors[1]/stated[1]);
     std::cout << "[numbers] normal known to 0.3 degrees, error over stated: x " << x << ", y " << y << "; stated "
-              << std::sqrt(stated[0]/TRIALS)*180/CV_PI << " degrees, " << std::sqrt(alone)*180/CV_PI << " from the images alone" << std::endl;
+              << std::sqrt(stated[0]/TRIALS)*180/CV_PI << " degrees, " << std::sqrt(alone)*180/CV_PI << " from the images alone"
+              << std::endl;
     CHECK(x == Approx(1).margin(0.3));
     CHECK(y == Approx(1).margin(0.3));
     CHECK(stated[0]/TRIALS < std::min(alone, DEVIATION*DEVIATION));

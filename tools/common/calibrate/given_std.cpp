@@ -46,7 +46,8 @@ bool GivenStd::ofIndices() const
 
 bool GivenStd::ofWindow() const
 {
-    return thickness > 0. || ofIndices() || outerIndex > 0. || distance > 0. || wedge > 0. || radius > 0. || center > 0. || normal > 0. || curvature > 0.;
+    return thickness > 0. || ofIndices() || outerIndex > 0. || distance > 0. || wedge > 0. || radius > 0. || center > 0. || normal > 0.
+        || curvature > 0.;
 }
 
 void GivenStdOptions::addTo(OptionParser& parser, bool target)

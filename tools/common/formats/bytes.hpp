@@ -6,6 +6,7 @@
 
 #include "console/failure.hpp"
 
+#include <cstdint>
 #include <cstring>
 #include <string>
 
@@ -35,6 +36,25 @@ public:
         const std::string raw = take(sizeof value);
         std::memcpy(&value, raw.data(), sizeof value);
         return value;
+    }
+
+    //! By its kind ('i', 'u', 'f') and bytes, as NumPy names them.
+    double number(char kind, int bytes)
+    {
+        switch (kind*16 + bytes)
+        {
+        case 'i'*16 + 1: return number<int8_t>();
+        case 'i'*16 + 2: return number<int16_t>();
+        case 'i'*16 + 4: return number<int32_t>();
+        case 'i'*16 + 8: return (double)number<int64_t>();
+        case 'u'*16 + 1: return number<uint8_t>();
+        case 'u'*16 + 2: return number<uint16_t>();
+        case 'u'*16 + 4: return number<uint32_t>();
+        case 'u'*16 + 8: return (double)number<uint64_t>();
+        case 'f'*16 + 4: return number<float>();
+        case 'f'*16 + 8: return number<double>();
+        default: throw Failure("a number has a type that is not read");
+        }
     }
 
 private:

@@ -7,9 +7,7 @@
 #include "console/numbers.hpp"
 #include "formats/foreign_file.hpp"
 #include "formats/keyed_cameras.hpp"
-#include "formats/mat.hpp"
-#include "formats/npz.hpp"
-#include "formats/yaml.hpp"
+#include "formats/notations.hpp"
 
 #include <algorithm>
 #include <cstring>

@@ -1,7 +1,7 @@
 // This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
 // SPDX-License-Identifier: Apache-2.0
 
-#include "formats/mat.hpp"
+#include "formats/notations.hpp"
 #include "formats/bytes.hpp"
 
 #include <algorithm>
@@ -40,23 +40,12 @@ Element nextElement(ByteReader& in)
 
 std::vector<double> numbersOf(const Element& element)
 {
+    const char* const TYPES[] = {"", "i1", "u1", "i2", "u2", "i4", "u4", "f4", "", "f8", "", "", "i8", "u8"};
+    const char* const type = element.type < sizeof TYPES/sizeof *TYPES ? TYPES[element.type] : "";
     ByteReader in(element.data);
     std::vector<double> numbers;
-    while (in.left() > 0)
-        switch (element.type)
-        {
-        case 1: numbers.push_back(in.number<int8_t>()); break;
-        case 2: numbers.push_back(in.number<uint8_t>()); break;
-        case 3: numbers.push_back(in.number<int16_t>()); break;
-        case 4: numbers.push_back(in.number<uint16_t>()); break;
-        case 5: numbers.push_back(in.number<int32_t>()); break;
-        case 6: numbers.push_back(in.number<uint32_t>()); break;
-        case 7: numbers.push_back(in.number<float>()); break;
-        case 9: numbers.push_back(in.number<double>()); break;
-        case 12: numbers.push_back((double)in.number<int64_t>()); break;
-        case 13: numbers.push_back((double)in.number<uint64_t>()); break;
-        default: return {};
-        }
+    while (*type && in.left() > 0)
+        numbers.push_back(in.number(type[0], type[1] - '0'));
     return numbers;
 }
 

@@ -1,9 +1,8 @@
 // This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
 // SPDX-License-Identifier: Apache-2.0
 
-#include "formats/npz.hpp"
+#include "formats/notations.hpp"
 #include "formats/bytes.hpp"
-#include "formats/yaml.hpp"
 
 #include <cstdint>
 
@@ -11,17 +10,10 @@ namespace tools {
 
 namespace {
 
-//! A number of NumPy's type, as "f8" or "i4".
-double numberOf(ByteReader& in, const std::string& type)
-{
-    return type == "f8" ? in.number<double>() : type == "f4" ? in.number<float>() : type == "i8" ? (double)in.number<int64_t>()
-         : type == "i4" ? in.number<int32_t>() : type == "u8" ? (double)in.number<uint64_t>()
-         : type == "u4" ? in.number<uint32_t>() : type == "i2" ? in.number<int16_t>() : in.number<uint8_t>();
-}
-
 bool isKnown(const std::string& type)
 {
-    return type == "f8" || type == "f4" || type == "i8" || type == "i4" || type == "u8" || type == "u4" || type == "i2" || type == "u1";
+    return type.size() == 2 && std::string("iuf").find(type[0]) != std::string::npos && std::string("1248").find(type[1]) != std::string::npos
+        && (type[0] != 'f' || type[1] > '2');
 }
 
 //! Lists in lists, of numbers in the order of memory.
@@ -89,7 +81,7 @@ Json readNpy(const std::string& bytes)
         return nullptr;
     std::vector<double> numbers;
     for (size_t i = 0; i < count; i++)
-        numbers.push_back(numberOf(in, type));
+        numbers.push_back(in.number(type[0], type[1] - '0'));
     return nested(numbers, shape, stride, 0, 0);
 }
 

@@ -141,63 +141,50 @@ std::vector<std::string> linesOf(const std::string& path)
     return lines;
 }
 
-std::vector<std::string> split(const std::string& line)
-{
-    std::vector<std::string> cells;
-    std::istringstream in(line);
-    for (std::string cell; std::getline(in, cell, ','); )
-        cells.push_back(cell);
-    return cells;
-}
-
-double numberIn(const std::string& path, size_t line, const std::string& cell)
+double numberIn(const std::string& where, const std::string& cell)
 {
     double number = NAN;
     if (!cell.empty() && cell != "nan" && cell != "NaN" && !parseNumber(cell, number))
-        throw Failure("'" + path + "' line " + std::to_string(line + 1) + ": '" + cell + "' is no number");
+        throw Failure(where + ": '" + cell + "' is no number");
     return number;
 }
 
 bool isDeepLabCut(const std::vector<std::string>& lines) { return !lines.empty() && lines[0].compare(0, 7, "scorer,") == 0; }
 
 //! Three lines of heading: scorer, bodyparts, coords; then one row a frame: its number, and x, y, likelihood of each part.
-void addDeepLabCut(const std::string& path, const std::vector<std::string>& lines, size_t camera, std::vector<Observation>& all)
+void addDeepLabCut(const std::string& path, size_t camera, std::vector<Observation>& all)
 {
     const double LIKELY = 0.6;          // AniPose's own default
-    const std::vector<std::string> parts = split(lines.size() > 1 ? lines[1] : ""), coords = split(lines.size() > 2 ? lines[2] : "");
-    if (parts.empty() || parts[0] != "bodyparts" || coords.size() != parts.size() || coords[0] != "coords")
+    const CsvTable table(path, {"scorer"}, "a table of DeepLabCut");
+    const auto& rows = table.rows();
+    if (rows.size() < 2 || rows[0].cells[0] != "bodyparts" || rows[1].cells[0] != "coords")
         throw Failure("'" + path + "' looks like a table of DeepLabCut, but its second and third line must begin with 'bodyparts' and "
                       "'coords' (of several animals it is not read)");
-    for (size_t r = 3; r < lines.size(); r++)
-    {
-        const std::vector<std::string> cells = split(lines[r] + ",");
-        if (cells.size() != parts.size())
-            throw Failure("'" + path + "' line " + std::to_string(r + 1) + ": " + std::to_string(parts.size())
-                          + " cells expected, as the heading has names; is the file cut short?");
-        for (size_t i = 1; i + 2 < parts.size(); i += 3)
+    for (size_t r = 2; r < rows.size(); r++)
+        for (size_t i = 1; i + 2 < rows[r].cells.size(); i += 3)
         {
-            const double likelihood = numberIn(path, r, cells[i + 2]);
-            const bool isSeen = !(likelihood < LIKELY);
-            all.push_back({cells[0], parts[i], camera, isSeen ? moved(numberIn(path, r, cells[i])) : "",
-                           isSeen ? moved(numberIn(path, r, cells[i + 1])) : "", (int)r + 1});
+            const auto cell = [&](size_t k) { return numberIn(table.where(rows[r]), rows[r].cells[i + k]); };
+            const bool isSeen = !(cell(2) < LIKELY);
+            all.push_back({rows[r].cells[0], rows[0].cells[i], camera, isSeen ? moved(cell(0)) : "", isSeen ? moved(cell(1)) : "",
+                           rows[r].line});
         }
-    }
 }
 
 //! The number of targets, then a line each: number, x, y, three sizes, sum of grey levels, number of correspondence (-1: none).
 bool isTargets(const std::vector<std::string>& lines)
 {
     double count;
-    return !lines.empty() && parseNumber(lines[0].substr(std::min(lines[0].find_first_not_of(' '), lines[0].size())), count);
+    return !lines.empty() && std::istringstream(lines[0]) >> count;
 }
 
 void addTargets(const std::string& path, const std::vector<std::string>& lines, size_t camera, std::vector<Observation>& all)
 {
     const size_t CELLS = 8;
-    const size_t count = (size_t)std::max(0., numberIn(path, 0, lines[0].substr(lines[0].find_first_not_of(' '))));
-    if (lines.size() != count + 1)
-        throw Failure("'" + path + "' looks like OpenPTV's targets, but has " + std::to_string(lines.size() - 1) + " of "
-                      + std::to_string(count) + ": is it cut short?");
+    double count = 0.;
+    std::istringstream(lines[0]) >> count;
+    if ((double)lines.size() != count + 1)
+        throw Failure("'" + path + "' looks like OpenPTV's targets, but has " + std::to_string(lines.size() - 1)
+                      + cv::format(" of %g: is it cut short?", count));
     for (size_t r = 1; r < lines.size(); r++)
     {
         std::istringstream in(lines[r]);
@@ -221,12 +208,12 @@ CsvTable readFilesOfCameras(const std::string& pattern)
     {
         const std::vector<std::string> lines = linesOf(files[c]);
         if (isDeepLabCut(lines))
-            addDeepLabCut(files[c], lines, c, all);
+            addDeepLabCut(files[c], c, all);
         else if (isTargets(lines))
             addTargets(files[c], lines, c, all);
         else
-            throw Failure("'" + files[c] + "' is neither a table of DeepLabCut (scorer, bodyparts, coords) nor OpenPTV's targets, the files "
-                          "of one camera each that are read");
+            throw Failure("'" + files[c] + "' is neither a table of DeepLabCut (scorer, bodyparts, coords) nor OpenPTV's targets, which "
+                          "are the files of one camera each that are read");
     }
     return tableOf(pattern, all);
 }
