@@ -20,6 +20,7 @@ static const char MANUAL[] = R"(Tells other programs of cameras behind windows: 
   refract_export calib.yml --to=ros --range=400,1200 --out-dir=DIR         camera1.yaml ... (sensor_msgs/CameraInfo)
   refract_export calib.yml --to=colmap --range=400,1200 [--points=points.csv] --out-dir=DIR
   refract_export calib.yml --to=calibmar --out-dir=DIR                     camera1.yaml ..., with the windows: exact
+  refract_export calib.yml --to=openptv --out-dir=DIR                      cam1.tif.ori, cam1.tif.addpar ..., ptv.par: exact
 
 No camera without a window sees what one behind a window sees, but for one depth. What is written is the central camera (place,
 direction, lens) that comes nearest for scenes between the two depths z of --range, in the frame of each camera and the unit of
@@ -29,7 +30,9 @@ camera's largest error is above --max-error pixels: give a smaller range, or mea
 --points, what refract_measure wrote: COLMAP's model gets the points, each with the pixels where the central cameras would have
 seen it. These are exact, whatever the table says. --image-extension=.png makes the names of its images those of files.
 
-Calibmar knows flat windows and domes of one layer without a wedge, and gets them as they are; others are refused.)";
+Calibmar knows flat windows and domes of one layer without a wedge, and gets them as they are; others are refused.
+OpenPTV knows flat panes of one layer, the same for all cameras, and distortion about the middle of the image. Its world begins behind the
+window of camera 1, with that camera's axes, y up and z back; its pixels are 0.01 mm.)";
 
 namespace {
 
@@ -47,8 +50,8 @@ void addOptions(OptionParser& parser, Options& options)
 {
     parser.add("calib.yml", options.calibration, "what refract_calib wrote, of any number of cameras").required();
     parser.add("--to", options.target, "whom to tell").required()
-        .check(isMember({"opencv", "mrcal", "colmap", "ros", "calibmar"}));
-    parser.add("--range", options.range, "NEAR,FAR: z of the scene in the frame of each camera (not for --to=calibmar)");
+        .check(isMember({"opencv", "mrcal", "colmap", "ros", "calibmar", "openptv"}));
+    parser.add("--range", options.range, "NEAR,FAR: z of the scene in the frame of each camera (not for --to=calibmar and openptv)");
     parser.add("--out", options.out, "file to write, .yml, .xml or .json (--to=opencv)");
     parser.add("--out-dir", options.folder, "folder to write to, made if it is not there (the others)");
     parser.add("--points", options.points, "points.csv of refract_measure (--to=colmap)");
@@ -61,7 +64,7 @@ void addOptions(OptionParser& parser, Options& options)
 }
 
 //! Whether the other program knows windows.
-bool isExact(const Options& options) { return options.target == "calibmar"; }
+bool isExact(const Options& options) { return options.target == "calibmar" || options.target == "openptv"; }
 
 void checkCombination(const Options& options, const std::string& settings)
 {
@@ -181,7 +184,9 @@ int refract_export_main(int argc, char** argv)
         checkCombination(options, command.settings());
         if (isExact(options))
         {
-            writeFolder(options, command.settings(), calibmarFiles(readComplete(options, command), sourceOf(options)));
+            const Calibration calibration = readComplete(options, command);
+            writeFolder(options, command.settings(), options.target == "openptv" ? openPtvFiles(calibration)
+                                                                                 : calibmarFiles(calibration, sourceOf(options)));
             return DONE;
         }
         const cv::Vec2d range = parseFiniteDepthRange(options.range, "--range");

@@ -37,6 +37,10 @@ window that it has none like.
 @param source the calibration's file */
 std::vector<ExportFile> calibmarFiles(const Calibration& calibration, const std::string& source);
 
+/** OpenPTV: camN.tif.ori and camN.tif.addpar of each camera, and ptv.par, exactly. Throws Failure for a lens or a window that it has none
+like, and where the cameras have different ones. */
+std::vector<ExportFile> openPtvFiles(const Calibration& calibration);
+
 } // namespace tools
 
 #endif // REFRACT_TOOLS_EXPORT_FILES_HPP
