@@ -4,7 +4,9 @@
 #include "calibrate/calib_file.hpp"
 #include "console/cli.hpp"
 #include "console/file_output.hpp"
+#include "console/numbers.hpp"
 #include "console/outputs.hpp"
+#include "console/progress.hpp"
 #include "console/table.hpp"
 #include "export/export_files.hpp"
 
@@ -131,36 +133,48 @@ CentralRig centralRigOf(const Options& options, const cv::Vec2d& range, const Co
 {
     const Calibration calibration = readComplete(options, command);
     CentralRig rig = {{}, sourceOf(options), range, calibration.unit};
+    Progress progress("fitting central cameras", (int)calibration.cameras.size(), command.quiet());
     for (size_t c = 0; c < calibration.cameras.size(); c++)
     {
         const cv::Ptr<cv::refract::RefractiveCamera> camera = calibration.cameras[c].camera;
         const RigidTransform& pose = calibration.extrinsics[c];
         const std::string name = format("camera%d", (int)c + 1);
+        progress.at(name);
         const CentralCamera central = bestCentralCamera(options, camera, range, name);
         rig.cameras.push_back({name, camera, pose, central, central.pose*pose});
+        progress.step();
     }
     return rig;
 }
 
-void writeFolder(const Options& options, const std::string& settings, const std::vector<ExportFile>& files)
+//! @return what was written
+std::vector<std::string> writeFolder(const Options& options, const std::string& settings, const std::vector<ExportFile>& files)
 {
+    std::vector<std::string> written;
     std::vector<Output> outputs;
     for (const ExportFile& file : files)
         outputs.push_back({"--out-dir", options.folder + "/" + file.name, OUTPUT_IN_FOLDER});
     checkOutputs(outputs, {options.calibration, options.points, settings});
     makeFolder(options.folder);
     for (const ExportFile& file : files)
-        writeText(options.folder + "/" + file.name, file.text);
+    {
+        written.push_back((fs::path(options.folder)/file.name).string());
+        writeText(written.back(), file.text);
+    }
+    return written;
 }
 
-void write(const Options& options, const std::string& settings, const CentralRig& rig)
+std::vector<std::string> write(const Options& options, const std::string& settings, const CentralRig& rig)
 {
     if (options.target == "opencv")
-        return writeOpenCV(options.out, rig);
+    {
+        writeOpenCV(options.out, rig);
+        return {options.out};
+    }
     const std::vector<MeasuredPoint> points = options.points.empty() ? std::vector<MeasuredPoint>()
                                                                      : readMeasuredPoints(options.points, (int)rig.cameras.size());
-    writeFolder(options, settings, options.target == "mrcal" ? mrcalFiles(rig) : options.target == "ros" ? rosFiles(rig)
-                                   : colmapFiles(rig, points, options.extension));
+    return writeFolder(options, settings, options.target == "mrcal" ? mrcalFiles(rig) : options.target == "ros" ? rosFiles(rig)
+                                          : colmapFiles(rig, points, options.extension));
 }
 
 void printTable(const CentralRig& rig)
@@ -175,6 +189,12 @@ void printTable(const CentralRig& rig)
     table.print(std::cout);
 }
 
+void printWritten(const std::vector<std::string>& files, const Command& command)
+{
+    if (!command.quiet())
+        std::cout << "Written: " << listed(files) << '\n';
+}
+
 } // namespace
 
 int refract_export_main(int argc, char** argv)
@@ -185,15 +205,17 @@ int refract_export_main(int argc, char** argv)
         if (isExact(options))
         {
             const Calibration calibration = readComplete(options, command);
-            writeFolder(options, command.settings(), options.target == "openptv" ? openPtvFiles(calibration)
-                                                                                 : calibmarFiles(calibration, sourceOf(options)));
+            printWritten(writeFolder(options, command.settings(), options.target == "openptv"
+                                                                      ? openPtvFiles(calibration)
+                                                                      : calibmarFiles(calibration, sourceOf(options))), command);
             return DONE;
         }
         const cv::Vec2d range = parseFiniteDepthRange(options.range, "--range");
         const CentralRig rig = centralRigOf(options, range, command);
-        write(options, command.settings(), rig);
+        const std::vector<std::string> files = write(options, command.settings(), rig);
         if (!command.quiet())
             printTable(rig);
+        printWritten(files, command);
         double worst = 0;
         for (const ExportedCamera& camera : rig.cameras)
             worst = camera.central.error.max <= worst ? worst : camera.central.error.max;

@@ -111,7 +111,8 @@ TEST_CASE("A deviation of what there is not is refused", "[given]")
     CHECK_THROWS_WITH(read({"--square-std=0.1"}, points), Catch::Contains("--scale-std"));
     CHECK(read({"--scale-std=0.05"}, points).scale == Approx(5e-4));
     CHECK_THROWS_AS(read({"--scale-std=0.05"}, pane()), Failure);
-    CHECK(read({}, points).scale == 0.);
+    CHECK(read({}, points).scale == Approx(5e-4));          // as of a board: nobody's points are exact
+    CHECK(read({"--exact"}, points).scale == 0.);
     CHECK_THROWS(read({"--thickness-std=-1"}, pane()));
     CHECK_THROWS(read({"--thickness-std=nan"}, pane()));
 }

@@ -87,6 +87,7 @@ TEST_CASE("refract_export writes OpenCV's cameras, which see the points within t
     CAPTURE(result.out, result.err);
     REQUIRE(result.code == 0);
     CHECK(result.out.find("camera2") != std::string::npos);
+    CHECK(mentions(result.out, "Written: '" + file + "'"));
     const Rig rig;
     FileStorage fs(file, FileStorage::READ);
     for (int c = 0; c < 2; c++)
@@ -127,6 +128,7 @@ TEST_CASE("refract_export writes mrcal's models", "[tools][export]")
     const ToolResult result = runTool("refract_export " + CALIB + " --to=mrcal" + RANGE + " --out-dir=" + (folder / "m"));
     CAPTURE(result.out, result.err);
     REQUIRE(result.code == 0);
+    CHECK(mentions(result.out, "Written: '" + (folder / "m/camera1.cameramodel") + "', '" + (folder / "m/camera2.cameramodel") + "'"));
     const ToolResult same = runTool("refract_export " + CALIB + " --to=opencv" + RANGE + " --out=" + (folder / "c.yml"));
     REQUIRE(same.code == 0);
     const Ptr<RefractiveCamera> read = RefractiveCamera::read(folder / "m/camera2.cameramodel");

@@ -10,6 +10,7 @@
 #include <fcntl.h>
 #include <map>
 #include <regex>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -227,4 +228,28 @@ TEST_CASE("JSON is what others read too", "[tools][outputs]")
         CHECK(nlohmann::json::accept(readFile(out)));
         CHECK(cv::FileStorage(out, cv::FileStorage::READ).isOpened());
     }
+}
+
+TEST_CASE("Of two runs with one output the second is refused before any work", "[tools][outputs]")
+{
+    const Inputs in;
+    const std::string out = in.folder / "points.csv", lock = in.folder / ".points.csv.lock";
+    const std::string measure = "refract_measure " + in.calib + " " + in.left + " " + in.right + TARGET + " --pixel-sigma=0.014 --out=";
+    const int other = open(lock.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0666);
+    REQUIRE(flock(other, LOCK_EX | LOCK_NB) == 0);
+    std::filesystem::create_symlink(out, in.folder / "points_link.csv");
+    for (const std::string& name : {out, in.folder / "./points.csv", in.folder / "points_link.csv"})
+    {
+        const ToolResult refused = runTool(measure + name);
+        CAPTURE(refused.err);
+        CHECK(refused.code == 1);
+        CHECK(mentions(refused.err, "--out: another run is about to write '" + name + "'"));
+        CHECK_FALSE(std::filesystem::exists(out));
+    }
+    close(other);                               // ended without a word: its file stays, and keeps nobody out
+    const ToolResult next = runTool(measure + out);
+    CAPTURE(next.err);
+    CHECK(next.code != 1);
+    CHECK(std::filesystem::exists(out));
+    CHECK_FALSE(std::filesystem::exists(lock));
 }

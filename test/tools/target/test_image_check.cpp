@@ -70,6 +70,10 @@ TEST_CASE("Sizes of images are checked, and the one that differs is named", "[im
     ImageSource known = DIRECT;
     known.imageSize = TALL;
     expect(said({known}, {{a, b}}), {"'" + a + "' is 64x48 pixels, not 48x64", "WIDTHxHEIGHT"});
+    expect(said({known}, {{a, tall, b}}), {"'" + a + "', '" + b + "' are 64x48 pixels, not 48x64"});
+    const std::string another = f.image("e.png", SMALL);
+    expect(said({DIRECT}, {{a, small, b, tall, another, a}}), {"'" + small + "', '" + another + "' are 32x24 pixels, '" + tall
+                                                               + "' is 48x64 pixels, 3 other images are 64x48"});
     ImageSource second = GLASS;         // another camera may have another size
     second.camera = 1;
     CHECK(said({DIRECT, second}, {{a}, {small}}).empty());
@@ -85,6 +89,8 @@ TEST_CASE("A file that is no image, or cut, is named before sizes", "[image chec
     std::ofstream(cut, std::ios::binary) << bytes.substr(0, bytes.size()/2);
     expect(said({DIRECT}, {{a, small, text}}), {"'" + text + "' is not an image"});
     expect(said({DIRECT}, {{a, cut}}), {"'" + cut + "' is cut short"});
+    expect(said({DIRECT, GLASS}, {{a, cut}, {text, small}}), {"2 of 4 images cannot be used: '" + cut + "' is cut short", "; '" + text
+                                                              + "' is not an image"});
 }
 
 TEST_CASE("A grey image has no channels", "[image check]")

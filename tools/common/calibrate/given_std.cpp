@@ -70,8 +70,8 @@ void GivenStdOptions::addTo(OptionParser& parser, bool target)
     if (target)
     {
         add("--square-std", SQUARE, "the same of --square (default: 0.05 %)");
-        add("--scale-std", SCALE, "the same of the scale of targets that come in points.csv, in percent of their lengths (default: 0, "
-            "exact)");
+        add("--scale-std", SCALE, "the same of the scale of targets that come in points.csv, in percent of their lengths (default: "
+            "0.05)");
         add("--placement-std", PLACEMENT, "by how much all boards, or the camera's mount, moved between the direct and the glass images, "
             "along each axis, one standard deviation (default: 0.02 mm)");
     }
@@ -147,7 +147,8 @@ GivenStd GivenStdOptions::of(const GivenValues& v) const
     // A sag s over a length L is a curvature of 8 s/L^2; the length is a metre.
     std.curvature = 8.*std.bow*v.millimetre/std::pow(1000.*v.millimetre, 2);
     const double PERCENT = 0.01;
-    std.scale = v.square > 0. ? choose(SQUARE, 1./v.square, Std(USUAL_SQUARE_STD, DEFAULT), true) : choose(SCALE, PERCENT, Std(), false);
+    const Std scale(USUAL_SCALE_STD, DEFAULT);
+    std.scale = v.square > 0. ? choose(SQUARE, 1./v.square, scale, true) : choose(SCALE, PERCENT, scale, true);
     std.placement = choose(PLACEMENT, 1., Std(USUAL_PLACEMENT_MM*v.millimetre, DEFAULT), true);
     return std;
 }

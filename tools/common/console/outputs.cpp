@@ -3,6 +3,7 @@
 
 #include "console/outputs.hpp"
 #include "console/failure.hpp"
+#include "console/file_lock.hpp"
 #include "console/file_output.hpp"
 #include "console/images.hpp"
 
@@ -10,6 +11,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <set>
 
 namespace tools {
@@ -43,6 +45,18 @@ void checkKind(const Output& output)
     if (output.kind == OUTPUT_PICTURE && (extensionOf(output.path).empty() || !cv::haveImageWriter(output.path)))
         throw Failure(output.option + "=" + output.path + ": no image format that can be written has this extension; use .png or "
                       ".jpg");
+}
+
+//! Of two runs that write one file, the work of one would be lost without a word.
+void keepFromOthers(const Output& output, const std::string& name)
+{
+    static std::map<std::string, std::unique_ptr<FileLock>> kept;       // to the end of the process
+    std::unique_ptr<FileLock>& lock = kept[name];
+    if (!lock)
+        lock = FileLock::tryOnce((fs::path(name).parent_path()/("." + fs::path(name).filename().string() + ".lock")).string());
+    if (!lock)
+        throw Failure(output.option + ": another run is about to write '" + output.path + "': wait until it has ended, or name another "
+                      "file");
 }
 
 } // namespace
@@ -80,6 +94,9 @@ void checkOutputs(const std::vector<Output>& outputs, const std::vector<std::str
         if (output.kind != OUTPUT_IN_FOLDER)
             requireWritable(output.path);
     }
+    for (const auto& entry : written)
+        if (entry.second->kind != OUTPUT_IN_FOLDER && entry.second->kind != OUTPUT_SHARED)
+            keepFromOthers(*entry.second, entry.first);
 }
 
 } // namespace tools

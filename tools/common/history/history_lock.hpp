@@ -4,7 +4,7 @@
 #ifndef REFRACT_TOOLS_HISTORY_LOCK_HPP
 #define REFRACT_TOOLS_HISTORY_LOCK_HPP
 
-#include <string>
+#include "console/file_lock.hpp"
 
 namespace tools {
 
@@ -14,15 +14,9 @@ class HistoryLock
 {
 public:
     explicit HistoryLock(const std::string& history);
-    ~HistoryLock();
-    HistoryLock(const HistoryLock&) = delete;
-    HistoryLock& operator=(const HistoryLock&) = delete;
 
 private:
-    bool tryOnce();
-
-    std::string file_;
-    int descriptor_ = -1;
+    std::unique_ptr<FileLock> lock_;
 };
 
 } // namespace tools

@@ -54,14 +54,64 @@ std::vector<Checked> readAll(const std::vector<std::vector<std::string>>& files,
                   "the light of the camera by --wavelength where an index is a material's name");
 }
 
+//! All that cannot be read are named, as each may have to be copied again.
+void requireReadable(const std::vector<Checked>& images)
+{
+    const size_t MOST = 8;
+    std::vector<const Checked*> bad;
+    for (const Checked& image : images)
+        if (image.error)
+            bad.push_back(&image);
+    if (bad.size() == 1)
+        std::rethrow_exception(bad[0]->error);
+    std::string text;
+    for (size_t i = 0; i < std::min(MOST, bad.size()); i++)
+        try
+        {
+            std::rethrow_exception(bad[i]->error);
+        }
+        catch (const Failure& error)
+        {
+            text += std::string(i ? "; " : ": ") + error.what();
+        }
+    if (!bad.empty())
+        throw Failure(cv::format("%zu of %zu images cannot be used", bad.size(), images.size()) + text
+                      + (bad.size() > MOST ? cv::format("; and %zu more", bad.size() - MOST) : ""));
+}
+
+std::vector<std::string> pathsOf(const std::vector<const Checked*>& images)
+{
+    std::vector<std::string> paths;
+    for (const Checked* image : images)
+        paths.push_back(image->path);
+    return paths;
+}
+
+//! "'a' is", "'a', 'b' are"
+std::string areThey(const std::vector<const Checked*>& images)
+{
+    return listed(pathsOf(images)) + (images.size() > 1 ? " are " : " is ");
+}
+
 void requireKnownSize(const std::vector<Checked>& images, const std::vector<ImageSource>& sources)
 {
-    for (const Checked& image : images)
+    for (const Checked& first : images)
     {
-        const cv::Size known = sources[image.source].imageSize;
-        if (!known.empty() && image.facts.size != known)
-            throw Failure("'" + image.path + "' is " + sizeText(image.facts.size) + " pixels, not " + sizeText(known)
-                          + " as the calibration, --camera or --image-size says: " + sizeAdvice(image.facts.size, known));
+        const cv::Size known = sources[first.source].imageSize, size = first.facts.size;
+        if (known.empty() || size == known)
+            continue;
+        std::vector<const Checked*> others, all;
+        for (const Checked& image : images)
+            if (image.source == first.source)
+            {
+                all.push_back(&image);
+                if (image.facts.size == size)
+                    others.push_back(&image);
+            }
+        if (others.size() == all.size())            // not the images, but what they are held against: one is enough
+            others.resize(1);
+        throw Failure(areThey(others) + sizeText(size) + " pixels, not " + sizeText(known)
+                      + " as the calibration, --camera or --image-size says: " + sizeAdvice(size, known));
     }
 }
 
@@ -76,15 +126,15 @@ void requireOneSize(const std::vector<Checked>& images, size_t source)
         return;
     const auto most = std::max_element(bySize.begin(), bySize.end(), [](const auto& a, const auto& b) {
         return a.second.size() < b.second.size(); });
+    const cv::Size usual = most->second[0]->facts.size;
+    const std::string those = most->second.size() > 1 ? std::to_string(most->second.size()) + " other images are "
+                                                      : "'" + most->second[0]->path + "' is ";
+    std::string odd;
     for (const auto& entry : bySize)
         if (entry.first != most->first)
-        {
-            const cv::Size size = entry.second[0]->facts.size, usual = most->second[0]->facts.size;
-            const size_t count = most->second.size();
-            throw Failure("'" + entry.second[0]->path + "' is " + sizeText(size) + " pixels, "
-                          + (count > 1 ? std::to_string(count) + " other images are " : "'" + most->second[0]->path + "' is ")
-                          + sizeText(usual) + ": all images of a camera must have one size; " + sizeAdvice(size, usual));
-        }
+            odd += areThey(entry.second) + sizeText(entry.second[0]->facts.size) + " pixels, ";
+    const cv::Size first = (bySize.begin() == most ? std::next(bySize.begin()) : bySize.begin())->second[0]->facts.size;
+    throw Failure(odd + those + sizeText(usual) + ": all images of a camera must have one size; " + sizeAdvice(first, usual));
 }
 
 //! The same, of both states.
@@ -122,9 +172,7 @@ std::vector<cv::Size> checkImages(const std::vector<ImageSource>& sources, const
                                   Channel channel, bool quiet)
 {
     const std::vector<Checked> images = readAll(files, quiet);
-    for (const Checked& image : images)
-        if (image.error)
-            std::rethrow_exception(image.error);
+    requireReadable(images);
     requireKnownSize(images, sources);
     for (size_t s = 0; s < sources.size(); s++)
         requireOneSize(images, s);

@@ -18,8 +18,8 @@ struct ImageSource
     std::string name = "images";    //!< "direct images"
 };
 
-/** Reads each image once. Throws Failure that names the file if one cannot be read, if an image has not the size of its source, if those of
-a camera differ in size, or if a colour is asked for and one is grey.
+/** Reads each image once. Throws Failure that names the files if some cannot be read, if they have not the size of their source, if those
+of a camera differ in size, or if a colour is asked for and one is grey.
 @param files of each source; none for point files
 @return the size of the images of each source */
 std::vector<cv::Size> checkImages(const std::vector<ImageSource>& sources, const std::vector<std::vector<std::string>>& files,

@@ -118,22 +118,33 @@ void TargetSearch::begin(Progress& progress)
     std::vector<Without> images;
     for (int i : first)
         images.push_back({paths_[i], results_[i].other});
-    if (first.size() == FIRST && !otherChessboard(images).empty())
+    if (first.size() > 1 && !otherChessboard(images).empty())
         refuse(first);
+    if (paths_.size() <= FIRST)         // all of them: no other images are worth a search before these are
+    {
+        searchThoroughly(progress);
+        if (std::none_of(first.begin(), first.end(), isFound))
+            refuse(first);
+        return;
+    }
     if (glimpse(part(order, FIRST, GLANCES), progress))
         return;
     lookForOthers(part(order, FIRST, EXPLAINING));
-    if (paths_.size() > FIRST)
-        refuse(part(order, 0, EXPLAINING));
+    refuse(part(order, 0, EXPLAINING));
 }
 
-std::vector<std::vector<cv::Point2d>> TargetSearch::finish(Progress& progress)
+void TargetSearch::searchThoroughly(Progress& progress)
 {
     std::vector<int> left;
     for (size_t i = 0; i < paths_.size(); i++)
         if (!results_[i].done)
             left.push_back((int)i);
     search(left, Target::THOROUGH, progress);
+}
+
+std::vector<std::vector<cv::Point2d>> TargetSearch::finish(Progress& progress)
+{
+    searchThoroughly(progress);
     std::vector<std::vector<cv::Point2d>> points;
     bool any = false;
     for (const Result& result : results_)

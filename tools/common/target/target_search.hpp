@@ -34,6 +34,8 @@ private:
     };
 
     void search(const std::vector<int>& which, Target::Effort effort, Progress& progress);
+    //! What a hurried search has not found.
+    void searchThoroughly(Progress& progress);
     //! Whether one of these is worth while to be searched.
     bool glimpse(const std::vector<int>& which, Progress& progress);
     void lookForOthers(const std::vector<int>& which);
