@@ -20,8 +20,9 @@ position_std, glass_window_std (normal_deg, distance, thickness, index, outer_in
 --laser-off='GLOB', images of the same names without the laser, the difference is looked at.
 
 points.csv: image,id,u1,v1,x,y,z,sx,sy,sz,status, one row a point of the line, about one a column of the image (a row, where the line
-runs down the image). s* is one standard deviation, from the line's own noise, the sheet's covariance and that of calib.yml; nan where
-there is no answer. status: 0 fine; 1 to 8 why there is no answer (RefractiveStatus; 7: the ray lies in the sheet).
+runs down the image). Where the line ends, jumps or gets much darker, a pixel shows two surfaces: points there are left out, and counted.
+s* is one standard deviation, from the line's own noise, the sheet's covariance and that of calib.yml; nan where there is no answer.
+status: 0 fine; 1 to 8 why there is no answer (RefractiveStatus; 7: the ray lies in the sheet).
 
 --outer-index=seawater:T=8,S=35 says the scene's medium now, where it is not that of calib.yml. The sheet must have been calibrated in it,
 too, as its own light bends with the medium.
@@ -189,6 +190,9 @@ std::vector<RidgePoint> ridgesOf(const BoardImage& board, const LineOnBoard& lin
     return ridges;
 }
 
+//! A unit after a number, with its blank; nothing where calib.yml has none.
+std::string after(const std::string& unit) { return unit.empty() ? "" : " " + unit; }
+
 //! Bent lines on flat boards: the sheet is no plane.
 std::string bendNotice(const SheetFit& fit, const std::string& unit)
 {
@@ -206,8 +210,8 @@ std::string bendNotice(const SheetFit& fit, const std::string& unit)
         ? "the sheet is not quite a plane (refracted at a window that it does not cross straight: describe that by --emitter), or the "
           "boards are not flat"
         : "it is not the sheet of the emitter that --emitter describes, or the boards are not flat";
-    return format("the lines on the boards are bent off the sheet, by %.2g %s on average and at most %.2g: %s", std::abs(sum/weight),
-                  unit.c_str(), largest, why);
+    return format("the lines on the boards are bent off the sheet, by %.2g%s on average and at most %.2g: %s", std::abs(sum/weight),
+                  after(unit).c_str(), largest, why);
 }
 
 //! What the images say against what was given of the emitter.
@@ -222,26 +226,27 @@ void warnOfEmitter(const Options& o, const SheetFit& fit, const Command& command
                             o.emitter.c_str(), -fit.planeExcess));
 }
 
-void printSheet(const SheetFit& fit, const std::vector<BoardImage>& boards, const Sheet& sheet, const std::string& unit)
+void printSheet(const SheetFit& fit, const std::vector<BoardImage>& boards, const Sheet& sheet)
 {
+    const std::string unit = after(sheet.unit);
     const cv::Mat& C = sheet.covariance;
     const double tilt = std::sqrt(C.at<double>(0, 0) + C.at<double>(1, 1) + C.at<double>(2, 2))*180/CV_PI;
     double rms = 0.;
     for (const LineOnBoard& line : fit.lines)
         rms += line.rmsPx*line.rmsPx/fit.lines.size();
-    std::cout << format("Sheet of light: %.6f x %+.6f y %+.6f z = %.4f %s (camera 1)\n", sheet.plane[0], sheet.plane[1], sheet.plane[2],
+    std::cout << format("Sheet of light: %.6f x %+.6f y %+.6f z = %.4f%s (camera 1)\n", sheet.plane[0], sheet.plane[1], sheet.plane[2],
                         sheet.plane[3], unit.c_str());
     if (isPlane(sheet))
         std::cout << format("  +- %.3f deg, ", tilt);
     else
         std::cout << "  is the nearest plane to the emitter's, which is refracted at its window;\n"
                   << format("  for a plane, chi-square is larger by %.1f\n", fit.planeExcess)
-                  << format("  +- %.3g %s (RMS where the lines are), ", fit.sheetStd, unit.c_str());
-    std::cout << format("at z %.4g to %.4g %s; %zu of %zu boards\n", sheet.depth[0], sheet.depth[1], unit.c_str(), fit.lines.size(),
+                  << format("  +- %.3g%s (RMS where the lines are), ", fit.sheetStd, unit.c_str());
+    std::cout << format("at z %.4g to %.4g%s; %zu of %zu boards\n", sheet.depth[0], sheet.depth[1], unit.c_str(), fit.lines.size(),
                         boards.size())
               << format("  lines: %.3f px off straight (RMS), profile %.1f px wide (standard deviation)\n", std::sqrt(rms), sheet.scale)
               << format("  boards' poses: errors %.1f times those of the corners' noise\n", fit.poseNoise)
-              << format("Each board held out: %.3f %s from the sheet of the others (RMS),\n  %.2f times what the +- says\n",
+              << format("Each board held out: %.3f%s from the sheet of the others (RMS),\n  %.2f times what the +- says\n",
                         fit.heldOutRms(), unit.c_str(), fit.heldOutRatio());
 }
 
@@ -289,11 +294,11 @@ int calibrateSheet(const Options& o, const Calibration& calibration, const Comma
             drawLine(o, readImage(set.images[line.image].path), boards[line.image].name, ridgesOf(boards[line.image], line));
     writeSheet(o.sheetOut, sheet, calibration);
     if (!command.quiet())
-        printSheet(fit, boards, sheet, sheet.unit);
+        printSheet(fit, boards, sheet);
     const bool overLimit = o.maxRms > 0. && !(fit.heldOutRms() <= o.maxRms), contradicted = fit.heldOutRatio() > CONTRADICTED;
     if (overLimit)
-        command.warn(format("limit not met: held-out boards are %.3g %s from the sheet, more than --max-rms=%g", fit.heldOutRms(),
-                            sheet.unit.c_str(), o.maxRms));
+        command.warn(format("limit not met: held-out boards are %.3g%s from the sheet, more than --max-rms=%g", fit.heldOutRms(),
+                            after(sheet.unit).c_str(), o.maxRms));
     if (contradicted)
         command.warn(format("held-out boards are %.1f times as far from the sheet as the +- says: some boards moved, are not flat, or "
                             "lens, window or sheet are not those of the calibration", fit.heldOutRatio()));
@@ -372,7 +377,7 @@ int measureWithSheet(const Options& o, const Calibration& calibration, const Com
     const std::vector<std::string> paths = expandGlob(o.images);
     std::vector<Scan> scans;
     Cloud cloud;
-    int points = 0, ambiguous = 0;
+    int points = 0, ambiguous = 0, mixed = 0;
     double sigma = 0.;
     Progress progress("measuring", (int)paths.size(), command.quiet());
     for (const std::string& path : paths)
@@ -392,6 +397,7 @@ int measureWithSheet(const Options& o, const Calibration& calibration, const Com
                 sigma += cv::norm(scan.measured.sigma[i], cv::NORM_L2SQR);
             }
         ambiguous += scan.line.ambiguous;
+        mixed += scan.line.mixed;
         if (!o.pictures.empty())
             drawLine(o, image, scan.name, scan.line.points);
         if (!o.cloud.empty())
@@ -408,8 +414,9 @@ int measureWithSheet(const Options& o, const Calibration& calibration, const Com
     if (!o.profile.empty())
         writeText(o.profile, profileOf(scans, calibration.unit));
     if (!command.quiet())
-        std::cout << format("%d points in %zu image%s, +- %.3g %s (RMS of one standard deviation, 3-D)\n", points, paths.size(),
-                            paths.size() == 1 ? "" : "s", std::sqrt(sigma/points), calibration.unit.c_str())
+        std::cout << format("%d points in %zu image%s, +- %.3g%s (RMS of one standard deviation, 3-D)\n", points, paths.size(),
+                            paths.size() == 1 ? "" : "s", std::sqrt(sigma/points), after(calibration.unit).c_str())
+                  << (mixed ? format("%d points left out, where the line ends, jumps or gets much darker\n", mixed) : std::string())
                   << (ambiguous ? format("%d columns left out, where two lines are about as strong\n", ambiguous) : std::string());
     return DONE;
 }

@@ -309,7 +309,7 @@ std::string wrongLengths(const Options& options, double square, const Calibratio
 {
     const double FAR_OFF = 0.2, CONTRADICTING = 5.;     // of a plane, whose error is not said; standard deviations, as those of a point
     const LengthScale scale = lengthScaleOf(calibration, {measured.begin(), measured.end()}, results, pixelSigma(options, calibration),
-                                            USUAL_SCALE_STD, options.triangulates() ? std::nullopt
+                                            USUAL_SQUARE_STD, options.triangulates() ? std::nullopt
                                             : std::optional<cv::Vec4d>(parsePlane(options.plane)));
     const bool isFar = std::abs(scale.ratio - 1.) > FAR_OFF, contradicts = options.triangulates() && scale.deviations() > CONTRADICTING;
     if (!isFar && !contradicts)

@@ -11,7 +11,7 @@ using namespace acceptance_scene;
 
 namespace {
 
-const double TARGET_STD = USUAL_SCALE_STD;
+const double TARGET_STD = USUAL_SQUARE_STD;
 
 //! Boards of a wrong square, seen by a rig and measured with a calibration. @param targetStd how wrong the square may be, relative
 LengthScale seenBy(const RigModel& truth, const Calibration& calibration, scenes::Random& random, double targetError,

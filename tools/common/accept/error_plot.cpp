@@ -33,8 +33,7 @@ std::string drawErrorsOverLength(const Acceptance& a)
     plot << "set xlabel " << Plot::quoted("length" + unit) << "\nset ylabel " << Plot::quoted("error of indication" + unit)
          << "\nset xrange [0:" << 1.1*longest << "]\nset yrange [" << -1.1*highest << ':' << 1.1*highest << "]\nset key off\n"
          << "plot $limits using 1:2 with lines linewidth 2 linecolor rgb '#dc2626', $limits using 1:(-$2) with lines linewidth 2 "
-            "linecolor rgb '#dc2626', 0 with lines linecolor rgb '#94a3b8', $errors using 1:2:3 with yerrorbars pointtype 7 pointsize 0.4 "
-            "linecolor rgb '#0284c7'\n";
+            "linecolor rgb '#dc2626', 0 with lines linecolor rgb '#94a3b8', " << Plot::withBars("errors", "1", 2, 3, "#0284c7") << '\n';
     return plot.svg();
 }
 

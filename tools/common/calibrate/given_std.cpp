@@ -147,7 +147,7 @@ GivenStd GivenStdOptions::of(const GivenValues& v) const
     // A sag s over a length L is a curvature of 8 s/L^2; the length is a metre.
     std.curvature = 8.*std.bow*v.millimetre/std::pow(1000.*v.millimetre, 2);
     const double PERCENT = 0.01;
-    const Std scale(USUAL_SCALE_STD, DEFAULT);
+    const Std scale(USUAL_SQUARE_STD, DEFAULT);
     std.scale = v.square > 0. ? choose(SQUARE, 1./v.square, scale, true) : choose(SCALE, PERCENT, scale, true);
     std.placement = choose(PLACEMENT, 1., Std(USUAL_PLACEMENT_MM*v.millimetre, DEFAULT), true);
     return std;

@@ -25,7 +25,7 @@ struct Std
     std::string text(const std::string& unit, double factor = 1.) const;
 };
 
-const double USUAL_SCALE_STD = 5e-4;        //!< relative, of a printed board, or of points that nobody says more of
+const double USUAL_SQUARE_STD = 5e-4;        //!< relative, of a printed board
 const double USUAL_PLACEMENT_MM = 0.02;      //!< of a board on a stand, or a camera on its mount, while the window goes in
 
 //! Of an index where nothing is said: of a material's name its tolerance and the light's band, 0.001 of a number; air as a number is exact.

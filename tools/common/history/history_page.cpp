@@ -15,11 +15,16 @@ namespace {
 const double DAY = 86400.;
 const char* const COLOURS[] = {"#0284c7", "#d97706", "#7c3aed"};
 
+//! Seconds beside the first and the last check.
+double roomOf(const CheckHistory& history)
+{
+    return std::max(DAY, 0.04*(secondsOf(history.checks.back().time) - secondsOf(history.checks.front().time)));
+}
+
 //! A time axis with room to both sides.
 void setTimes(Plot& plot, const CheckHistory& history)
 {
-    const double first = secondsOf(history.checks.front().time), last = secondsOf(history.checks.back().time);
-    const double room = std::max(DAY, 0.04*(last - first));
+    const double first = secondsOf(history.checks.front().time), last = secondsOf(history.checks.back().time), room = roomOf(history);
     // A label is at a date, within the picture, and there are as many as have room.
     const size_t LABELS = 6, every = (history.checks.size() + LABELS - 1)/LABELS;
     plot << "set xtics time\nset format x '%Y-%m-%d' timedate\nset xtics rotate by -25 left offset -2,0 (";
@@ -57,21 +62,22 @@ std::string changeFigure(const CheckHistory& history, const HistoryResult& resul
         plot.data(name, rows);
         ewma += ", $" + name + " using 1:2 with linespoints pointtype 7 pointsize 0.5" + style
             + (change.axes[axis].empty() ? " notitle" : " title " + Plot::quoted(change.axes[axis]));
-        values += (axis ? ", $" : "$") + name + " using 1:3:4 with yerrorbars pointtype 7 pointsize 0.25 linewidth 1.5" + style
-            + " notitle";
+        // Bars of one check stand side by side.
+        const double aside = 0.15*roomOf(history)*(axis - 0.5*(change.size() - 1));
+        values += (axis ? ", " : "") + Plot::withBars(name, cv::format("($1%+.0f)", aside), 3, 4, COLOURS[axis]);
         if (beyond.empty())
             continue;
         plot.data(name + "beyond", beyond);
         ewma += ", $" + name + "beyond using 1:2 with points pointtype 6 pointsize 1.2 linewidth 2 linecolor rgb '#dc2626' notitle";
     }
     setTimes(plot, history);
-    plot << "set multiplot layout 2,1\nset lmargin 12\nset rmargin 8\nset bmargin 3\nset xzeroaxis linecolor rgb '#94a3b8'\n"
-         << "set format x ''\n"
-         << "set ylabel 'EWMA / sigma'\nset key above horizontal\n"
+    plot << "set multiplot\nset lmargin at screen 0.15\nset rmargin at screen 0.94\nset xzeroaxis linecolor rgb '#94a3b8'\n"
+         << "set offsets 0, 0, graph 0.06, graph 0.06\nset format x ''\nset tmargin at screen 0.91\nset bmargin at screen 0.56\n"
+         << "set ylabel 'EWMA / sigma'\nset key at graph 0.5,1.14 center horizontal\n"
          << "plot $limits using 1:2 with lines linecolor rgb '#dc2626' dashtype 2 title 'limit', $limits using 1:(-$2) with lines "
             "linecolor rgb '#dc2626' dashtype 2 notitle" << ewma << "\n"
-         << "set format x '%Y-%m-%d' timedate\nset ylabel " << Plot::quoted(change.unit.empty() ? "estimate" : change.unit)
-         << "\nplot " << values << "\nunset multiplot\n";
+         << "set format x '%Y-%m-%d' timedate\nset tmargin at screen 0.51\nset bmargin at screen 0.16\nset ylabel "
+         << Plot::quoted(change.unit.empty() ? "estimate" : change.unit) << "\nplot " << values << "\nunset multiplot\n";
     return plot.svg();
 }
 

@@ -108,11 +108,13 @@ bool fallsOnBothSides(const Mat& smooth, const Point2d& pixel, const Vec2d& acro
 
 } // namespace
 
+int borderOf(double scale) { return (int)std::ceil(3*scale); }
+
 std::vector<RidgePoint> findRidges(const Mat& signal, double scale, double noise)
 {
     const Derivatives d(signal, scale);
     const double ofFirst = noise/(std::sqrt(8*CV_PI)*scale*scale), ofSecond = noise*std::sqrt(3/(16*CV_PI))/(scale*scale*scale);
-    const int border = (int)std::ceil(3*scale);           // beyond the image nothing is known
+    const int border = borderOf(scale);
     Mat smooth;
     GaussianBlur(signal, smooth, Size(), 0.7*scale);
     std::vector<RidgePoint> points;

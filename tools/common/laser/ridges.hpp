@@ -40,6 +40,9 @@ double scaleOfLine(const cv::Mat& signal, const std::vector<cv::Point2d>& pixels
 is what their variances say. 0: none. @param variances by white noise */
 double excessNoise(const std::vector<double>& residuals, const std::vector<double>& variances);
 
+//! Pixels at the border of an image that have no ridge, as what is beyond is not known.
+int borderOf(double scale);
+
 //! How far points must be along the line for their errors to be independent.
 inline double independentAfter(double scale) { return 3.*scale; }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "laser/scan_line.hpp"
+#include "laser/mixed_points.hpp"
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -212,12 +213,22 @@ ScanLine findScanLine(const Mat& signal, const Calibration& calibration, const S
         pieces[k] = part;
     }
     line.noise = noiseOfPieces(ridges, pieces, byColumns, sheet.scale, sheet.lineNoise);
+    const int border = borderOf(sheet.scale) + 1, last = (byColumns ? signal.cols : signal.rows) - 1 - border;
     for (const Piece& piece : pieces)
+    {
+        LinePiece part = {{}, piece.columns, byColumns};
         for (int i : piece.points)
         {
-            line.points.push_back(ridges[i]);
-            line.points.back().sigma = std::hypot(ridges[i].sigma, line.noise);
+            part.points.push_back(ridges[i]);
+            part.points.back().sigma = std::hypot(ridges[i].sigma, line.noise);
         }
+        const std::vector<bool> mixed = mixedPoints(part, sheet.scale, border, last);
+        for (size_t i = 0; i < part.points.size(); i++)
+            if (mixed[i])
+                line.mixed++;
+            else
+                line.points.push_back(part.points[i]);
+    }
     const auto along = [&](const RidgePoint& p) { return byColumns ? p.pixel.x : p.pixel.y; };
     std::sort(line.points.begin(), line.points.end(), [&](const RidgePoint& a, const RidgePoint& b) { return along(a) < along(b); });
     return line;

@@ -14,6 +14,7 @@ struct ScanLine
 {
     std::vector<RidgePoint> points;
     int ambiguous = 0;          //!< columns left out, as two lines are about as strong
+    int mixed = 0;              //!< points left out, where the line ends, jumps or gets darker
     double noise = 0.;          //!< px, of the points beyond white noise; their sigma has it
 };
 

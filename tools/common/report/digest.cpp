@@ -26,26 +26,21 @@ Lines broken(const std::string& text, const std::string& indent = "  ")
 
 void append(Lines& lines, const Lines& more) { lines.insert(lines.end(), more.begin(), more.end()); }
 
-//! As many reasons as there is room for, and how many more there are.
+//! The first reason, whole; of the others as many as there is room for, and how many more there are.
 Lines reasonsWithin(const Lines& reasons, size_t room)
 {
     Lines lines;
     const size_t each = std::max(LEAST_OF_REASON, room/std::max<size_t>(1, reasons.size()));
     for (size_t i = 0; i < reasons.size(); i++)
     {
-        const Lines all = broken("- " + reasons[i] + "."), next = firstOf(all, each, DIGEST_COLUMNS);
+        const Lines all = broken("- " + reasons[i] + "."), next = i == 0 ? all : firstOf(all, each, DIGEST_COLUMNS);
         const size_t kept = i + 1 < reasons.size() ? 1 : 0;     // for what may not fit after it
-        if (lines.size() + next.size() + kept <= room)
+        if (i > 0 && lines.size() + next.size() + kept > room)
         {
-            append(lines, next);
-            continue;
+            lines.push_back(format("- and %zu more: --verbose", reasons.size() - i));
+            break;
         }
-        if (i == 0 && room > 1)
-            append(lines, firstOf(all, room - kept, DIGEST_COLUMNS));
-        const size_t more = reasons.size() - std::max<size_t>(i, room > 1 && i == 0);
-        if (more > 0)
-            lines.push_back(format("- and %zu more: --verbose", more));
-        break;
+        append(lines, next);
     }
     return lines;
 }
@@ -177,7 +172,7 @@ void printDigest(std::ostream& out, const RigCalibration& c, const Assessment& a
 
     size_t room = DIGEST_LINES - std::min(DIGEST_LINES, head.size() + tail.size());
     const Lines reasons = reasonsWithin(reasonsOf(f), room);
-    room -= reasons.size();
+    room -= std::min(room, reasons.size());
     for (const std::string& line : head)
         out << toned(out, line, f.tone()) << '\n';
     for (const std::string& line : reasons)

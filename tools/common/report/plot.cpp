@@ -100,6 +100,13 @@ void Plot::checkAvailable(const std::string& option)
         throw Failure(option + " needs gnuplot with its terminal 'svg' to draw its pictures: install gnuplot-nox");
 }
 
+std::string Plot::withBars(const std::string& name, const std::string& x, int y, int deviation, const std::string& colour)
+{
+    const std::string style = " linecolor rgb '" + colour + "' notitle", shown = "$" + name + " using " + x + ":";
+    return shown + cv::format("($%d-$%d):(0):(2*$%d) with vectors nohead linewidth 1.5", y, deviation, deviation) + style + ", " + shown
+        + std::to_string(y) + " with points pointtype 7 pointsize 0.35" + style;
+}
+
 std::string Plot::quoted(const std::string& text)
 {
     std::string result = "'";

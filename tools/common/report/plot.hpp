@@ -42,6 +42,10 @@ public:
     //! Throws Failure that says what to install if there is no gnuplot. @param option that asks for pictures
     static void checkAvailable(const std::string& option = "--report");
 
+    /** What "plot" shows of points with their deviation to either side: gnuplot's own error bars have a white disc over their middle.
+    @param x, y, deviation columns or expressions of the data, as 1 or ($1+5) */
+    static std::string withBars(const std::string& name, const std::string& x, int y, int deviation, const std::string& colour);
+
     //! A text as a gnuplot string constant.
     static std::string quoted(const std::string& text);
 

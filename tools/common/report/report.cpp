@@ -111,6 +111,18 @@ std::string windowSentence(const RigCalibration& c, int k)
     return which + format(" is tilted by %.2f°, known to ±%.2g°.", tilt, windowStd(c.fit, k).normalDeg[0]);
 }
 
+//! "a camera behind a flat window", "2 cameras behind 2 flat windows", "3 cameras in a dome".
+std::string subjectOf(const RigCalibration& c)
+{
+    const GlassWindow window = c.fit.rig.cameras[0]->window();
+    int windows = 0;
+    for (int k = 0; k < c.data.cameraCount; k++)
+        windows += c.fit.rig.ownsWindow(k);
+    const std::string shape = (window.shape == WINDOW_FLAT ? "flat " : "") + std::string(nameOfShape(window));
+    return (c.data.cameraCount == 1 ? std::string("a camera") : format("%d cameras", c.data.cameraCount))
+        + (isRound(window) ? " in " : " behind ") + (windows == 1 ? "a " + shape : format("%d ", windows) + shape + "s");
+}
+
 //! Verdict in plain words: the class colours the card.
 void setVerdict(PageValues& page, const RigCalibration& c, const Findings& f)
 {
@@ -125,8 +137,7 @@ void setVerdict(PageValues& page, const RigCalibration& c, const Findings& f)
         windows += windowSentence(c, k);
     }
     const GlassWindow window = c.fit.rig.cameras[0]->window();
-    page.set("behind", window.shape == WINDOW_FLAT ? std::string("behind a flat window")
-                       : isRound(window) ? std::string("in a ") + nameOfShape(window) : std::string("behind a ") + nameOfShape(window));
+    page.set("subject", subjectOf(c));
     page.set("place_heading", isRound(window) ? "centre ±, " + c.unit : std::string("normal ±, °"));
     page.set("place_note", isRound(window) ? "The centre is seen from the camera" : "The normal points from the camera to the scene");
     page.set("headline", headline(c));
