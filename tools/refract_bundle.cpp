@@ -4,10 +4,11 @@
 #include "bundle/bundle_output.hpp"
 #include "bundle/moments.hpp"
 #include "calibrate/units.hpp"
+#include "colmap/colmap_survey.hpp"
 #include "console/cli.hpp"
-#include "formats/point_table.hpp"
 #include "console/file_output.hpp"
 #include "console/outputs.hpp"
+#include "formats/point_table.hpp"
 
 #include <iostream>
 
@@ -17,6 +18,7 @@ wand that is waved, particles, any matches. Cameras, windows, R, T and points ar
   refract_bundle start.yml --points=matches.csv --lengths=lengths.csv --out=calib.yml       a rig that was never calibrated
   refract_bundle calib.yml --points=matches.csv --out=better.yml                            one that was: what it knows has its say
   refract_bundle calib.yml --points=matches.csv --free=normal --out=new.yml                 its windows were taken out meanwhile
+  refract_bundle calib.yml --colmap=sparse/0 --lengths=lengths.csv --out=again.yml --colmap-out=refracted     images of a rig that moves
 
 start.yml: what refract_calib wrote, or lenses, windows and R, T written by hand, within some degrees and per cent
 (doc/howto_bundle.md has one). The cameras do not move. If start.yml has no glass_window, the options say it, of all cameras, as those of
@@ -42,6 +44,14 @@ Scale: of --lengths; without, of T in start.yml, if it is not free.
 calib.yml: as refract_calib writes it, for all tools. points.csv (--points-out): as refract_measure writes it; status 9: a wrong match,
 left out; 1: fewer than two cameras saw it. Of a point that two cameras saw, a wrong match along the epipolar curve cannot be seen.
 
+--colmap: what COLMAP reconstructed with pinholes, text or binary, of raw images of a calibrated camera or rig that moved through a scene.
+It gives observations, and poses and points to start from; its lenses count nothing. --images='port/*' --images='starboard/*', one for
+each camera of calib.yml, say by names which images are whose (not needed for one camera, nor where the model has a rig of as many). The
+scale: of --lengths (id1,id2 are POINT3D_ID), of --positions (image,x,y,z,std: where camera 1 was; the results are then in this frame), of
+the rig's base line, or of the window alone; its +- says how well. --colmap-out: the model with its refined poses and points, raw pixels,
+and for cameras the nearest pinholes, for refract_undistort --colmap. --points-out: id,x,y,z,sx,sy,sz,images,angle_deg,status of each point;
+those whose rays are nearly parallel have their large +-. --poses-out: the same of each view.
+
 Exit code: 0 done, 1 could not do it, 2 done and written, but a limit is not met, or what start.yml knows is contradicted.)";
 
 namespace {
@@ -50,17 +60,21 @@ using namespace tools;
 
 struct Options
 {
-    std::string start, points, lengths, out, pointsOut, summary;
+    std::string start, points, lengths, out, pointsOut, posesOut, colmapOut, summary;
     BundleOptions bundle;
     PixelOrigin origin;
+    SurveyOptions survey;
     double maxRms = 0., pixelSigma = 0.;
     bool robust = true;
+
+    bool isSurvey() const { return !survey.model.empty(); }
 };
 
 void addOptions(OptionParser& parser, Options& o)
 {
     parser.add("start.yml", o.start, "the rig to start from").required();
-    parser.add("--points", o.points, "what the cameras saw: [image,]id,u1,v1,u2,v2,...").required();
+    const Option points = parser.add("--points", o.points, "what the cameras saw: [image,]id,u1,v1,u2,v2,...");
+    const Option colmap = parser.add("--colmap", o.survey.model, "or a folder with a model of COLMAP, of raw images").excludes(points);
     o.origin.addTo(parser);
     parser.add("--lengths", o.lengths, "known distances between points: [image,]id1,id2,length,std");
     parser.add("--free", o.bundle.free, "what the matches alone must tell; none: nothing").delimiter(',')
@@ -74,6 +88,11 @@ void addOptions(OptionParser& parser, Options& o)
         "contradict the start (default: std1,std2,... of the matches, that of start.yml, or 2 px at most)").check(moreThanZero());
     parser.add("--out", o.out, "the calibration to write (.yml, .xml, .json)").required();
     parser.add("--points-out", o.pointsOut, "points.csv to write");
+    parser.add("--images", o.survey.images, "names of a camera's images in the model, a glob; once for each camera").oneAtATime()
+        .needs(colmap);
+    parser.add("--positions", o.survey.positions, "where camera 1 was: image,x,y,z,std").needs(colmap);
+    parser.add("--colmap-out", o.colmapOut, "folder for the refined model, made if it is not there").needs(colmap);
+    parser.add("--poses-out", o.posesOut, "poses.csv to write: of each view, with +-").needs(colmap);
     parser.add("--summary", o.summary, "JSON file with all that is said, and more");
     parser.add("--max-rms", o.maxRms, "limit: RMS over all pixels, px").check(moreThanZero());
 }
@@ -86,7 +105,7 @@ Calibration resultOf(const Options& o, const BundleAdjustment& adjustment, const
     file.verdict = findings.verdict();
     file.contradictions = findings.contradictions;
     file.command = command.line();
-    file.time = timeOfFiles({o.start, o.points, o.lengths});
+    file.time = timeOfFiles({o.start, o.points, o.lengths, o.survey.positions});
     return file;
 }
 
@@ -106,38 +125,92 @@ void explain(const Options& o, const Calibration& file, const Matches& matches, 
     findings.contradictions.back() += explanation.empty() ? "; no single name of --free explains it" : "; " + explanation + " (--free)";
 }
 
+std::string unitOf(const Options& o, const Calibration& file)
+{
+    return !o.bundle.unit.empty() ? o.bundle.unit : file.unit;
+}
+
+int ended(const Options& o, const BundleAdjustment& adjustment, const BundleFindings& findings)
+{
+    if (!findings.limitMet)
+        std::cerr << cv::format("refract_bundle: limit not met: %.3g px RMS, the limit is %g.\n", adjustment.fit.rms, o.maxRms);
+    for (const std::string& sentence : findings.contradictions)
+        std::cerr << "refract_bundle: " << sentence << ".\n";
+    return findings.pass() ? DONE : LIMIT_NOT_MET;
+}
+
+int bundleMatches(const Options& options, const Calibration& file, const Command& command)
+{
+    if (options.points.empty())
+        throw Failure("give --points=matches.csv, what the cameras saw, or --colmap=FOLDER of a rig that moved");
+    const Matches matches = readMatches(options.points, file, options.start, options.origin.yFrom);
+    const GivenLengths lengths = options.lengths.empty() ? GivenLengths() : readLengths(options.lengths, options.points, matches);
+    const BundleStart start = startOf(file, options.start, options.bundle);
+    requireScale(start, options.start, matches, lengths);
+    requireSameMoments(start, matches);
+    const BundleAdjustment adjustment = adjustBundle(start, matches, lengths, options.robust);
+    const double knownSigma = options.pixelSigma > 0. ? options.pixelSigma : !matches.stds.empty() ? matches.usualStd() : file.sigma;
+    BundleFindings findings = findingsOf(start, lengths, adjustment, knownSigma, options.maxRms);
+    explain(options, file, matches, lengths, start, adjustment, findings);
+    const std::string unit = unitOf(options, file);
+    if (!options.pointsOut.empty())
+        writeText(options.pointsOut, pointsCsv(matches, adjustment, stemOf(options.points)));
+    if (!options.summary.empty())
+        writeText(options.summary, bundleJson(matches, adjustment, findings, command.line(), unit));
+    writeCalibration(options.out, resultOf(options, adjustment, findings, file, unit, command));
+    if (!command.quiet())
+        printBundle(std::cout, matches, adjustment, findings, unit);
+    return ended(options, adjustment, findings);
+}
+
+int bundleSurvey(const Options& options, const Calibration& file, const Command& command)
+{
+    SurveyOptions survey = options.survey;
+    survey.lengths = options.lengths;
+    survey.robust = options.robust;
+    survey.pixelSigma = options.pixelSigma;
+    survey.maxRms = options.maxRms;
+    const BundleStart start = startOf(file, options.start, options.bundle);
+    const SurveyResult result = adjustColmap(survey, start, unitOf(options, file), command.quiet());
+    if (!options.pointsOut.empty())
+        writeText(options.pointsOut, surveyPointsCsv(result));
+    if (!options.posesOut.empty())
+        writeText(options.posesOut, surveyPosesCsv(result));
+    if (!options.summary.empty())
+        writeText(options.summary, surveyJson(result, command.line()));
+    if (!options.colmapOut.empty())
+        writeColmapModel(refractedModel(result), options.colmapOut, "refract_bundle: poses and points through windows, nearest pinholes");
+    writeCalibration(options.out, resultOf(options, result.adjustment.bundle, result.findings, file, result.unit, command));
+    if (!command.quiet())
+        printSurvey(std::cout, result);
+    return ended(options, result.adjustment.bundle, result.findings);
+}
+
+//! Before any work.
+void refuseOverwriting(const Options& o, const std::string& settings)
+{
+    std::vector<Output> outputs = {{"--out", o.out, OUTPUT_CALIBRATION}, {"--points-out", o.pointsOut, OUTPUT_TEXT},
+                                   {"--poses-out", o.posesOut, OUTPUT_TEXT}, {"--summary", o.summary, OUTPUT_TEXT}};
+    std::vector<std::string> inputs = {o.start, o.points, o.lengths, o.survey.positions, settings};
+    for (bool isBinary : {true, false})
+    {
+        for (const std::string& file : o.colmapOut.empty() ? std::vector<std::string>() : colmapFilesOf(o.colmapOut, isBinary))
+            outputs.push_back({"--colmap-out", file, OUTPUT_IN_FOLDER});
+        for (const std::string& file : o.isSurvey() ? colmapFilesOf(o.survey.model, isBinary) : std::vector<std::string>())
+            inputs.push_back(file);
+    }
+    checkOutputs(outputs, inputs);
+}
+
 } // namespace
 
 int refract_bundle_main(int argc, char** argv)
 {
     return runTool(argc, argv, MANUAL, [](Command& command) {
         const Options options = parsed(command, addOptions);
-        checkOutputs({{"--out", options.out, OUTPUT_CALIBRATION}, {"--points-out", options.pointsOut, OUTPUT_TEXT},
-                      {"--summary", options.summary, OUTPUT_TEXT}},
-                     {options.start, options.points, options.lengths, command.settings()});
+        refuseOverwriting(options, command.settings());
         const Calibration file = readCalibration(options.start);
         warnOfContradictions(file, options.start, command);
-        const Matches matches = readMatches(options.points, file, options.start, options.origin.yFrom);
-        const GivenLengths lengths = options.lengths.empty() ? GivenLengths() : readLengths(options.lengths, options.points, matches);
-        const BundleStart start = startOf(file, options.start, options.bundle);
-        requireScale(start, options.start, matches, lengths);
-        requireSameMoments(start, matches);
-        const BundleAdjustment adjustment = adjustBundle(start, matches, lengths, options.robust);
-        const double knownSigma = options.pixelSigma > 0. ? options.pixelSigma : !matches.stds.empty() ? matches.usualStd() : file.sigma;
-        BundleFindings findings = findingsOf(start, lengths, adjustment, knownSigma, options.maxRms);
-        explain(options, file, matches, lengths, start, adjustment, findings);
-        const std::string unit = !options.bundle.unit.empty() ? options.bundle.unit : file.unit;
-        if (!options.pointsOut.empty())
-            writeText(options.pointsOut, pointsCsv(matches, adjustment, stemOf(options.points)));
-        if (!options.summary.empty())
-            writeText(options.summary, bundleJson(matches, adjustment, findings, command.line(), unit));
-        writeCalibration(options.out, resultOf(options, adjustment, findings, file, unit, command));
-        if (!command.quiet())
-            printBundle(std::cout, matches, adjustment, findings, unit);
-        if (!findings.limitMet)
-            std::cerr << cv::format("refract_bundle: limit not met: %.3g px RMS, the limit is %g.\n", adjustment.fit.rms, options.maxRms);
-        for (const std::string& sentence : findings.contradictions)
-            std::cerr << "refract_bundle: " << sentence << ".\n";
-        return findings.pass() ? DONE : LIMIT_NOT_MET;
+        return options.isSurvey() ? bundleSurvey(options, file, command) : bundleMatches(options, file, command);
     });
 }

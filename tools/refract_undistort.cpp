@@ -4,6 +4,7 @@
 #include "calibrate/calib_file.hpp"
 #include "calibrate/light.hpp"
 #include "calibrate/rig_data.hpp"
+#include "colmap/pinhole_images.hpp"
 #include "console/cli.hpp"
 #include "console/file_output.hpp"
 #include "console/frames.hpp"
@@ -21,6 +22,7 @@ static const char MANUAL[] = R"(Turns images taken through the window into those
 
   refract_undistort calib.yml IMAGE... --depth=600 --out-dir=DIR
   refract_undistort calib.yml IMAGE... --plane=0,0,1,600 --out-dir=DIR
+  refract_undistort again.yml --colmap=refracted --image-dir=images --out-dir=dense
 
 The correction depends on where the scene is: exact for points on the plane z = depth (or a x + b y + c z = d, in the
 camera's frame); --depth=inf for scenes far away. The new images have the old names, size and camera matrix; pixels that
@@ -30,6 +32,10 @@ are taken as they are stored, whatever the EXIF data say of the camera's orienta
 --channels corrects each colour of a colour image for its own wavelength, as a window in front of water bends blue more than red;
 calib.yml must say what the window is made of (refract_calib --index=N-BK7 --outer-index=water). Without it, all colours are
 corrected as that of the calibration.
+
+--colmap: the model that refract_bundle --colmap-out wrote, with the calibration of the same run. Each image is corrected at the depth of
+the points that it shows, interpolated between them; what is left by wrong depth is said, from points that take no part. DIR/images,
+DIR/sparse (PINHOLE cameras) and DIR/stereo are what COLMAP's dense stereo, OpenMVS and others take.
 
 IMAGE may be a quoted glob, numbered images (left%04d.png) or a video (.avi, .mp4, .mkv ...); frames of a video become
 frame000001.png and so on.)";
@@ -41,7 +47,7 @@ namespace fs = std::filesystem;
 
 struct Options
 {
-    std::string calibration, folder, depth, plane, channels;
+    std::string calibration, folder, depth, plane, channels, colmap, imageFolder;
     std::vector<std::string> sources;
     int camera = 1;
     bool noWindow = false;
@@ -151,56 +157,83 @@ private:
     std::vector<cv::Mat> maps_;
 };
 
+void addOptions(OptionParser& parser, Options& options)
+{
+    parser.add("calib.yml", options.calibration, "what refract_calib wrote").required();
+    const Option images = parser.add("IMAGE", options.sources, "images, quoted globs, numbered images or videos");
+    const Option depth = parser.add("--depth", options.depth, "z of the scene in the camera's frame; inf: far away");
+    const Option plane = parser.add("--plane", options.plane, "a,b,c,d: the scene lies on a x + b y + c z = d");
+    parser.add("--out-dir", options.folder, "folder to write to, made if it is not there").required();
+    const Option channels = parser.add("--channels", options.channels, "R,G,B: wavelength of each channel, nm, as 610,540,465 of a usual "
+                                       "sensor; each is corrected by itself");
+    const Option camera = parser.add("--camera", options.camera, "which camera of the rig took the images")
+        .check(isCountUpTo(MAX_CAMERAS)).captureDefault();
+    Option colmap = parser.add("--colmap", options.colmap, "folder with the model that refract_bundle --colmap-out wrote");
+    for (const Option& other : {images, depth, plane, channels, camera})
+        colmap.excludes(other);
+    colmap.needs(parser.add("--image-dir", options.imageFolder, "folder of the images that the model names").needs(colmap));
+    parser.addFlag("--no-window", options.noWindow, "calib.yml has no glass_window, and there is none");
+}
+
+int undistortSurvey(const Options& options, const Calibration& calibration, const Command& command)
+{
+    const ColmapModel model = readColmapModel(options.colmap);
+    checkPinholeImages(model, {options.calibration, command.settings()}, options.imageFolder, options.folder);
+    const PinholeImages done = writePinholeImages(model, calibration, options.imageFolder, options.folder, command.quiet());
+    if (!command.quiet())
+        std::cout << cv::format("%d image%s written to %s/images, corrected at the depth of %zu pixels;\n", done.images,
+                                done.images == 1 ? "" : "s", options.folder.c_str(), done.points)
+                  << cv::format("off by wrong depth between them: %.2g px RMS, 95 %% below %.2g px\n", done.rms, done.most);
+    return DONE;
+}
+
+int undistortImages(const Options& options, const Calibration& calibration, const Command& command)
+{
+    if (options.sources.empty())
+        throw Failure("give the images to correct, or --colmap and --image-dir");
+    const std::vector<double> depth = depthOf(options);
+    const bool byColour = !options.channels.empty();
+    const ChannelWavelengths wavelengths = byColour ? parseChannels(options.channels) : ChannelWavelengths();
+    if (options.camera > (int)calibration.cameras.size())
+        throw Failure(cv::format("--camera=%d: '%s' has %d camera%s", options.camera, options.calibration.c_str(),
+                                 (int)calibration.cameras.size(), calibration.cameras.size() == 1 ? "" : "s"));
+    std::vector<Frames> sources;
+    for (const std::string& source : options.sources)
+        sources.emplace_back(source);
+    const std::vector<Job> jobs = listJobs(options, sources);
+    refuseOverwriting(options, command.settings(), sources, jobs);
+    const auto camera = calibration.cameras[options.camera - 1].camera;
+    Corrector corrector(byColour ? camerasInColours(camera, wavelengths, options.calibration) : std::vector{camera}, depth);
+    Progress progress("correcting images", (int)jobs.size(), command.quiet());
+    for (const Job& job : jobs)
+    {
+        Frames& frames = sources[job.source];
+        progress.at(frames.name(job.frame));
+        const cv::Mat corrected = corrector.correct(frames.read(job.frame, true), frames.name(job.frame));
+        makeFolder(options.folder);     // now that there is something to write
+        writeImage(job.output, corrected);
+        progress.step();
+    }
+    if (!command.quiet())
+    {
+        const std::string notice = byColour ? "each colour by itself" : oneColourNotice(*camera);
+        std::cout << jobs.size() << (jobs.size() == 1 ? " image" : " images") << " written to " << options.folder
+                  << (notice.empty() ? "" : ", corrected " + notice) << std::endl;
+    }
+    return DONE;
+}
+
 } // namespace
 
 int refract_undistort_main(int argc, char** argv)
 {
     return runTool(argc, argv, MANUAL, [](Command& command) {
-        Options options;
-        command.parser.add("calib.yml", options.calibration, "what refract_calib wrote").required();
-        command.parser.add("IMAGE", options.sources, "images, quoted globs, numbered images or videos").required();
-        command.parser.add("--depth", options.depth, "z of the scene in the camera's frame; inf: far away");
-        command.parser.add("--plane", options.plane, "a,b,c,d: the scene lies on a x + b y + c z = d");
-        command.parser.add("--out-dir", options.folder, "folder to write to, made if it is not there").required();
-        command.parser.add("--channels", options.channels, "R,G,B: wavelength of each channel, nm, as 610,540,465 of a usual "
-                           "sensor; each is corrected by itself");
-        command.parser.add("--camera", options.camera, "which camera of the rig took the images")
-            .check(isCountUpTo(MAX_CAMERAS)).captureDefault();
-        command.parser.addFlag("--no-window", options.noWindow, "calib.yml has no glass_window, and there is none");
-        command.parse();
-
-        const std::vector<double> depth = depthOf(options);
-        const bool byColour = !options.channels.empty();
-        const ChannelWavelengths wavelengths = byColour ? parseChannels(options.channels) : ChannelWavelengths();
+        const Options options = parsed(command, addOptions);
+        if (options.colmap.empty() && !options.sources.empty())
+            depthOf(options);           // before any file is read
         const Calibration calibration = readCalibration(options.calibration);
         requireWindows(calibration, options.calibration, options.noWindow);
         warnOfContradictions(calibration, options.calibration, command);
-        if (options.camera > (int)calibration.cameras.size())
-            throw Failure(cv::format("--camera=%d: '%s' has %d camera%s", options.camera, options.calibration.c_str(),
-                                     (int)calibration.cameras.size(), calibration.cameras.size() == 1 ? "" : "s"));
-        std::vector<Frames> sources;
-        for (const std::string& source : options.sources)
-            sources.emplace_back(source);
-        const std::vector<Job> jobs = listJobs(options, sources);
-        refuseOverwriting(options, command.settings(), sources, jobs);
-        const auto camera = calibration.cameras[options.camera - 1].camera;
-        Corrector corrector(byColour ? camerasInColours(camera, wavelengths, options.calibration) : std::vector{camera}, depth);
-        Progress progress("correcting images", (int)jobs.size(), command.quiet());
-        for (const Job& job : jobs)
-        {
-            Frames& frames = sources[job.source];
-            progress.at(frames.name(job.frame));
-            const cv::Mat corrected = corrector.correct(frames.read(job.frame, true), frames.name(job.frame));
-            makeFolder(options.folder);     // now that there is something to write
-            writeImage(job.output, corrected);
-            progress.step();
-        }
-        if (!command.quiet())
-        {
-            const std::string notice = byColour ? "each colour by itself" : oneColourNotice(*camera);
-            std::cout << jobs.size() << (jobs.size() == 1 ? " image" : " images") << " written to " << options.folder
-                      << (notice.empty() ? "" : ", corrected " + notice) << std::endl;
-        }
-        return DONE;
+        return options.colmap.empty() ? undistortImages(options, calibration, command) : undistortSurvey(options, calibration, command);
     });
 }

@@ -107,19 +107,6 @@ int countKnown(const BundleStart& start)
     return count;
 }
 
-//! The standard deviation of a usual pixel, and the degrees of freedom that tell it; lengths and what was known are equations, too.
-void setNoise(const BundleStart& start, const GivenLengths& lengths, double squaredPixels, BundleAdjustment& result)
-{
-    Fit& fit = result.fit;
-    int lengthCount = 0;
-    const double ofLengths = lengths.list.empty() ? 0. : squaredLengths(lengths, result.points, lengthCount);
-    const double ofPrior = squaredPrior(start, fit.rig);
-    const int free = (int)(estimatedWindowParameters(fit).size() + estimatedRigParameters(fit).size());
-    fit.dof = 2.*result.usedPixels + lengthCount + countKnown(start) - 3.*result.answers() - free;
-    const double left = fit.dof - ofLengths - ofPrior;
-    fit.sigma = std::sqrt(squaredPixels/std::max(left, 1.));
-}
-
 void setPoints(const Matches& matches, const Mat& points3D, const Mat& deviations, const std::vector<Mat>& inliers,
                BundleAdjustment& result)
 {
@@ -190,6 +177,34 @@ std::vector<std::vector<Mat>> covariancesOf(const Matches& matches)
 
 } // namespace
 
+void adjusted(const std::function<void()>& adjust)
+{
+    try
+    {
+        adjust();
+    }
+    catch (const CalibrationError& e)
+    {
+        throw Failure(explained(e));
+    }
+    catch (const cv::Exception& e)
+    {
+        throw Failure(e.err);
+    }
+}
+
+void setNoise(const BundleStart& start, const GivenLengths& lengths, double squaredPixels, int unknownPoses, BundleAdjustment& result)
+{
+    Fit& fit = result.fit;
+    int lengthCount = 0;
+    const double ofLengths = lengths.list.empty() ? 0. : squaredLengths(lengths, result.points, lengthCount);
+    const double ofPrior = squaredPrior(start, fit.rig);
+    const int free = (int)(estimatedWindowParameters(fit).size() + estimatedRigParameters(fit).size());
+    fit.dof = 2.*result.usedPixels + lengthCount + countKnown(start) - 3.*result.answers() - unknownPoses - free;
+    const double left = fit.dof - ofLengths - ofPrior;
+    fit.sigma = std::sqrt(squaredPixels/std::max(left, 1.));
+}
+
 int BundleAdjustment::answers() const
 {
     return (int)std::count_if(points.begin(), points.end(), [](const Point3d& X) { return X.x == X.x; });
@@ -219,27 +234,18 @@ BundleAdjustment adjustBundle(const BundleStart& start, const Matches& matches, 
     }
     const TermCriteria criteria(TermCriteria::COUNT + TermCriteria::EPS, 1000, 1e-12);
     Mat points3D, deviations;
-    try
-    {
+    adjusted([&] {
         fit.rms = refractiveBundleAdjust(pixels, fit.rig.cameras, fit.rig.windows, Rs, Ts, noArray(), noArray(), points3D, lengths.rows(),
                                          fit.stdDeviations, fit.covariance, deviations, noArray(), inliers,
                                          start.flags | (robust ? GLASS_ROBUST : 0), noArray(), criteria, noArray(), covariancesOf(matches),
                                          start.covariance, lengths.commonStd());
-    }
-    catch (const CalibrationError& e)
-    {
-        throw Failure(explained(e));
-    }
-    catch (const cv::Exception& e)
-    {
-        throw Failure(e.err);
-    }
+    });
     for (int c = 1; c < matches.cameraCount(); c++)
         fit.rig.extrinsics[c] = {Rs[c], Ts[c]};
     setPoints(matches, points3D, deviations, inliers, result);
     double squaredPixels;
     result.rmsOfCamera = rmsOfCameras(matches, result, squaredPixels);
-    setNoise(start, lengths, squaredPixels, result);
+    setNoise(start, lengths, squaredPixels, 0, result);
     return result;
 }
 

@@ -6,6 +6,7 @@
 
 #include "bundle/bundle_start.hpp"
 #include "calibrate/fit.hpp"
+#include <functional>
 
 namespace tools {
 
@@ -26,6 +27,14 @@ struct BundleAdjustment
 
 //! Throws Failure that says what the matches do not determine, or why there is no answer.
 BundleAdjustment adjustBundle(const BundleStart& start, const Matches& matches, const GivenLengths& lengths, bool robust);
+
+/** Runs what adjusts. Throws Failure that says what was found, then what to do here. */
+void adjusted(const std::function<void()>& adjust);
+
+/** The standard deviation of a usual pixel, and the degrees of freedom that tell it; lengths and what was known are equations, too.
+@param squaredPixels of all that are used, each over its relative variance
+@param unknownPoses numbers that say where views are, beside what is known of them */
+void setNoise(const BundleStart& start, const GivenLengths& lengths, double squaredPixels, int unknownPoses, BundleAdjustment& result);
 
 //! As a file of it, with the label of the start; without its unit.
 Calibration toFile(const BundleAdjustment& adjustment, const Calibration& start);

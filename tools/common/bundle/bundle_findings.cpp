@@ -62,6 +62,8 @@ std::string scaleOf(const BundleStart& start, const GivenLengths& lengths, const
                                                     : format(" of %d objects", lengths.objects);
         return format("%zu length%s", lengths.list.size(), lengths.list.size() == 1 ? "" : "s") + of;
     }
+    if (fit.rig.cameras.size() == 1)
+        return "";                      // something else tells it
     const int at = extrinsicsColumn(fit.rig, 1) + 3;
     const Vec3d T = start.rig.extrinsics[1].T;
     if (start.covariance.empty() || !(start.covariance.at<double>(at, at) > 0))

@@ -4,7 +4,6 @@
 #include "bundle/bundle_output.hpp"
 #include "calibrate/estimated_parameters.hpp"
 #include "console/csv.hpp"
-#include "console/json.hpp"
 #include "console/table.hpp"
 
 #include <algorithm>
@@ -19,21 +18,6 @@ namespace tools {
 namespace {
 
 const size_t WIDTH = 80;
-
-//! As many names as a line holds, and how many more there are.
-std::string fitted(const std::string& head, const std::vector<std::string>& words)
-{
-    std::string line = head;
-    for (size_t i = 0; i < words.size(); i++)
-    {
-        const std::string more = i + 1 < words.size() ? format(", and %zu more", words.size() - i - 1) : "";
-        const std::string next = (i ? ", " : "") + words[i];
-        if (line.size() + next.size() + more.size() > WIDTH)
-            return line + (i ? format(", and %zu more", words.size() - i) : words[i].substr(0, WIDTH - line.size()));
-        line += next;
-    }
-    return line;
-}
 
 std::string correctionText(const char* name, const Correction& correction)
 {
@@ -158,46 +142,71 @@ std::string pointsCsv(const Matches& matches, const BundleAdjustment& adjustment
     return csv.str();
 }
 
-std::string bundleJson(const Matches& matches, const BundleAdjustment& adjustment, const BundleFindings& findings,
-                       const std::string& command, const std::string& unit)
+std::string fittedLine(const std::string& head, const std::vector<std::string>& words)
+{
+    std::string line = head;
+    for (size_t i = 0; i < words.size(); i++)
+    {
+        const std::string more = i + 1 < words.size() ? format(", and %zu more", words.size() - i - 1) : "";
+        const std::string next = (i ? ", " : "") + words[i];
+        if (line.size() + next.size() + more.size() > WIDTH)
+            return line + (i ? format(", and %zu more", words.size() - i) : words[i].substr(0, WIDTH - line.size()));
+        line += next;
+    }
+    return line;
+}
+
+Json adjustmentJson(const BundleAdjustment& adjustment, const BundleFindings& findings, const std::string& command,
+                    const std::string& unit)
 {
     Json cameras = Json::array();
     for (size_t c = 0; c < findings.corrections.size(); c++)
         cameras.append(jsonOf(findings.corrections[c], adjustment.rmsOfCamera[c]));
-    const Json json = {
+    return {
         {"verdict", findings.verdict()}, {"pass", findings.pass()}, {"rms", adjustment.fit.rms}, {"residual_sigma", adjustment.fit.sigma},
         {"degrees_of_freedom", adjustment.fit.dof}, {"unit", unit}, {"scale", findings.scale},
         {"points", adjustment.points.size()}, {"points_with_answer", adjustment.answers()},
-        {"pixels", adjustment.seenPixels}, {"pixels_used", adjustment.usedPixels},
-        {"left_out", namesOf(matches, adjustment.outliers())}, {"hardly_determined", findings.weak},
+        {"pixels", adjustment.seenPixels}, {"pixels_used", adjustment.usedPixels}, {"hardly_determined", findings.weak},
         {"contradictions", findings.contradictions}, {"cameras", cameras},
         {"windows", parametersOf(estimatedWindowParameters(adjustment.fit))},
         {"lenses_and_places", parametersOf(estimatedRigParameters(adjustment.fit))}, {"command", command}};
+}
+
+std::string bundleJson(const Matches& matches, const BundleAdjustment& adjustment, const BundleFindings& findings,
+                       const std::string& command, const std::string& unit)
+{
+    Json json = adjustmentJson(adjustment, findings, command, unit);
+    json.set("left_out", namesOf(matches, adjustment.outliers()));
     return json.text(2) + "\n";
 }
 
-void printBundle(std::ostream& out, const Matches& matches, const BundleAdjustment& adjustment, const BundleFindings& findings,
-                 const std::string& unit)
+void printCorrections(std::ostream& out, const BundleFindings& findings, const std::string& unit)
 {
     const int shown = shownCameras(findings), cameras = (int)findings.corrections.size();
-    const Fit& fit = adjustment.fit;
-    out << findings.verdict()
-        << format(": %.3g px RMS, noise %.3g px a coordinate, %.0f degrees of freedom\n", fit.rms, fit.sigma, fit.dof);
-    out << fitted("scale: ", {findings.scale}) << "\n";
     out << "found off the start (degrees, " << (unit.empty() ? "units of length" : unit)
         << (cameras > shown ? "), the camera that is known least:\n" : "):\n");
     for (int c = 0; c < cameras && cameras <= shown; c++)
         out << cameraLines(findings, c);
     if (cameras > shown)
         out << cameraLines(findings, worstCamera(findings));
+}
+
+void printBundle(std::ostream& out, const Matches& matches, const BundleAdjustment& adjustment, const BundleFindings& findings,
+                 const std::string& unit)
+{
+    const Fit& fit = adjustment.fit;
+    out << findings.verdict()
+        << format(": %.3g px RMS, noise %.3g px a coordinate, %.0f degrees of freedom\n", fit.rms, fit.sigma, fit.dof);
+    out << fittedLine("scale: ", {findings.scale}) << "\n";
+    printCorrections(out, findings, unit);
     out << pointsLine(adjustment, unit) << "\n";
     if (adjustment.usedPixels < adjustment.seenPixels)
         out << format("pixels left out: %d of %d\n", adjustment.seenPixels - adjustment.usedPixels, adjustment.seenPixels);
     const std::vector<int> outliers = adjustment.outliers();
     if (!outliers.empty())
-        out << fitted("wrong matches: ", namesOf(matches, outliers)) << "\n";
+        out << fittedLine("wrong matches: ", namesOf(matches, outliers)) << "\n";
     if (!findings.weak.empty())
-        out << fitted("hardly determined: ", findings.weak) << "\n";
+        out << fittedLine("hardly determined: ", findings.weak) << "\n";
 }
 
 } // namespace tools

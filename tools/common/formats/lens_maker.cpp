@@ -32,7 +32,8 @@ const ColmapModel COLMAP_MODELS[] = {
     {6, "FULL_OPENCV", 2, 8, "opencv"}, {7, "FOV", 2, 1, nullptr}, {8, "SIMPLE_RADIAL_FISHEYE", 1, 1, "fisheye"},
     {9, "RADIAL_FISHEYE", 1, 2, "fisheye"}, {10, "THIN_PRISM_FISHEYE", 2, 8, nullptr},
     {11, "RAD_TAN_THIN_PRISM_FISHEYE", 2, 12, nullptr}, {12, "SIMPLE_DIVISION", 1, 1, nullptr}, {13, "DIVISION", 2, 1, nullptr},
-    {14, "SIMPLE_FISHEYE", 1, 0, "fisheye"}, {15, "FISHEYE", 2, 0, "fisheye"}, {16, "EUCM", 2, 2, nullptr}};
+    {14, "SIMPLE_FISHEYE", 1, 0, "fisheye"}, {15, "FISHEYE", 2, 0, "fisheye"}, {16, "EUCM", 2, 2, nullptr},
+    {17, "EQUIRECTANGULAR", 0, 0, nullptr}};     // width, height
 
 const ColmapModel* findColmapModel(const std::string& name)
 {

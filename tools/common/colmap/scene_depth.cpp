@@ -1,0 +1,85 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#include "colmap/scene_depth.hpp"
+
+#include <opencv2/imgproc.hpp>
+#include <algorithm>
+
+using namespace cv;
+
+namespace tools {
+
+namespace {
+
+const int CELL = 16;            // px
+
+//! 1/z = p0 + p1 x + p2 y, where x, y are -1 ... 1; of few points it is the mean.
+Vec3d planeOf(const std::vector<Point2d>& pixels, const std::vector<double>& depths, Size size)
+{
+    const int FEW = 8, count = (int)pixels.size();
+    Mat A = Mat::zeros(count, 3, CV_64F), b(count, 1, CV_64F), solution;
+    for (int i = 0; i < count; i++)
+    {
+        A.at<double>(i, 0) = 1.;
+        A.at<double>(i, 1) = count >= FEW ? 2.*pixels[i].x/size.width - 1. : 0.;
+        A.at<double>(i, 2) = count >= FEW ? 2.*pixels[i].y/size.height - 1. : 0.;
+        b.at<double>(i) = 1./depths[i];
+    }
+    solve(A, b, solution, DECOMP_SVD);
+    return Vec3d(solution.ptr<double>());
+}
+
+double valueAt(const Vec3d& plane, double x, double y, Size size)
+{
+    return plane[0] + plane[1]*(2.*x/size.width - 1.) + plane[2]*(2.*y/size.height - 1.);
+}
+
+//! Where there is no weight, as around it: from coarser to finer cells.
+Mat filled(const Mat& sums, const Mat& weights)
+{
+    const double LITTLE = 0.25;             // of a point: cells with one hardly heed their neighbours
+    if (sums.rows == 1 && sums.cols == 1)
+        return sums/std::max(weights.at<double>(0), 1e-12);
+    const Size half((sums.cols + 1)/2, (sums.rows + 1)/2);
+    Mat evenSums, evenWeights, coarse;
+    copyMakeBorder(sums, evenSums, 0, 2*half.height - sums.rows, 0, 2*half.width - sums.cols, BORDER_CONSTANT, Scalar(0));
+    copyMakeBorder(weights, evenWeights, 0, 2*half.height - sums.rows, 0, 2*half.width - sums.cols, BORDER_CONSTANT, Scalar(0));
+    resize(evenSums, coarse, half, 0, 0, INTER_AREA);
+    Mat coarseWeights;
+    resize(evenWeights, coarseWeights, half, 0, 0, INTER_AREA);
+    Mat around;
+    resize(filled(4*coarse, 4*coarseWeights), around, evenSums.size(), 0, 0, INTER_LINEAR);
+    around = around(Rect(0, 0, sums.cols, sums.rows));
+    Mat numerator = sums + LITTLE*around, denominator = weights + LITTLE;
+    return numerator/denominator;
+}
+
+} // namespace
+
+Mat_<double> sceneDepth(const std::vector<Point2d>& pixels, const std::vector<double>& depths, Size size)
+{
+    const Vec3d plane = planeOf(pixels, depths, size);
+    const Size cells((size.width + CELL - 1)/CELL, (size.height + CELL - 1)/CELL);
+    Mat_<double> sums(cells, 0.), weights(cells, 0.);
+    for (size_t i = 0; i < pixels.size(); i++)
+    {
+        const int x = std::min(std::max((int)pixels[i].x/CELL, 0), cells.width - 1);
+        const int y = std::min(std::max((int)pixels[i].y/CELL, 0), cells.height - 1);
+        sums(y, x) += 1./depths[i] - valueAt(plane, pixels[i].x, pixels[i].y, size);
+        weights(y, x) += 1.;
+    }
+    Mat off;
+    resize(filled(sums, weights), off, Size(cells.width*CELL, cells.height*CELL), 0, 0, INTER_LINEAR);
+    const auto range = std::minmax_element(depths.begin(), depths.end());
+    Mat_<double> depth(size);
+    for (int y = 0; y < size.height; y++)
+        for (int x = 0; x < size.width; x++)
+        {
+            const double inverse = valueAt(plane, x, y, size) + off.at<double>(y, x);
+            depth(y, x) = inverse > 0 ? std::min(std::max(1./inverse, *range.first), *range.second) : *range.second;
+        }
+    return depth;
+}
+
+} // namespace tools

@@ -1,0 +1,19 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#ifndef REFRACT_TOOLS_SCENE_DEPTH_HPP
+#define REFRACT_TOOLS_SCENE_DEPTH_HPP
+
+#include <opencv2/core.hpp>
+
+namespace tools {
+
+/** Depth all over an image from that of some of its pixels: 1/z is a plane (as that of a plane is), and what the points are off it, which
+is smoothed over some pixels and continued where there are none; never nearer or farther than all points.
+@param pixels at least one. @param depths z of each, above 0
+@return CV_64F */
+cv::Mat_<double> sceneDepth(const std::vector<cv::Point2d>& pixels, const std::vector<double>& depths, cv::Size size);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_SCENE_DEPTH_HPP

@@ -1,0 +1,212 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#include "colmap/survey.hpp"
+#include "console/failure.hpp"
+#include "console/view_names.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <unordered_map>
+
+namespace tools {
+
+using cv::format;
+
+RigidTransform transformOf(const ColmapPose& pose)
+{
+    const cv::Vec4d q = pose.q/cv::norm(pose.q);
+    const cv::Vec3d v(q[1], q[2], q[3]);
+    const double sine = cv::norm(v), angle = 2*std::atan2(sine, q[0]);
+    return {rotationMatrix(sine > 0 ? v*(angle/sine) : cv::Vec3d()), pose.t};
+}
+
+ColmapPose colmapPoseOf(const RigidTransform& transform)
+{
+    const cv::Vec3d rvec = rotationVector(transform.R);
+    const double angle = cv::norm(rvec), scale = angle > 0 ? std::sin(angle/2)/angle : 0.5;
+    return {{std::cos(angle/2), scale*rvec[0], scale*rvec[1], scale*rvec[2]}, transform.T};
+}
+
+bool matchesPattern(const std::string& name, const std::string& pattern)
+{
+    size_t n = 0, p = 0, star = std::string::npos, from = 0;
+    while (n < name.size())
+        if (p < pattern.size() && pattern[p] == '*')
+        {
+            star = p++;
+            from = n;
+        }
+        else if (p < pattern.size() && (pattern[p] == '?' || pattern[p] == name[n]))
+        {
+            n++;
+            p++;
+        }
+        else if (star != std::string::npos)
+        {
+            p = star + 1;
+            n = ++from;
+        }
+        else
+            return false;
+    while (p < pattern.size() && pattern[p] == '*')
+        p++;
+    return p == pattern.size();
+}
+
+namespace {
+
+//! Which camera took an image, and when.
+struct Taken
+{
+    int camera;
+    std::string moment;
+};
+
+//! The rig of the model with as many cameras; null: there is none.
+const ColmapRig* rigOf(const ColmapModel& model, int cameras)
+{
+    for (const ColmapRig& rig : model.rigs)
+        if (std::count_if(rig.sensors.begin(), rig.sensors.end(), [](const ColmapSensor& s) { return s.type == COLMAP_CAMERA; }) == cameras)
+            return &rig;
+    return nullptr;
+}
+
+std::vector<Taken> takenByRig(const ColmapModel& model, const ColmapRig& rig)
+{
+    std::map<uint32_t, int> cameraOf;
+    for (const ColmapSensor& sensor : rig.sensors)
+        if (sensor.type == COLMAP_CAMERA)
+            cameraOf.insert({sensor.id, (int)cameraOf.size()});
+    std::unordered_map<uint64_t, std::string> frameOf;
+    for (const ColmapFrame& frame : model.frames)
+        for (const ColmapData& data : frame.data)
+            if (data.type == COLMAP_CAMERA && frame.rig == rig.id)
+                frameOf[data.id] = "frame " + std::to_string(frame.id);
+    std::vector<Taken> all;
+    for (const ColmapImage& image : model.images)
+    {
+        const auto camera = cameraOf.find(image.camera);
+        const auto frame = frameOf.find(image.id);
+        if (camera == cameraOf.end() || frame == frameOf.end())
+            throw Failure("image '" + image.name + "' is of no camera of the model's rig: give --images for each camera");
+        all.push_back({camera->second, frame->second});
+    }
+    return all;
+}
+
+std::vector<Taken> takenByNames(const ColmapModel& model, const std::vector<std::string>& globs)
+{
+    std::vector<Taken> all;
+    std::vector<std::vector<std::string>> names(globs.size());
+    std::vector<std::vector<size_t>> images(globs.size());
+    for (const ColmapImage& image : model.images)
+    {
+        int camera = -1;
+        for (size_t c = 0; c < globs.size(); c++)
+            if (matchesPattern(image.name, globs[c]))
+            {
+                if (camera >= 0)
+                    throw Failure("image '" + image.name + "' is of two cameras: --images=" + globs[camera] + " and " + globs[c]);
+                camera = (int)c;
+            }
+        if (camera >= 0)
+        {
+            names[camera].push_back(image.name);
+            images[camera].push_back(all.size());
+        }
+        all.push_back({camera, image.name});
+    }
+    for (size_t c = 0; c < globs.size(); c++)
+        if (names[c].empty())
+            throw Failure("no image of the model is of --images=" + globs[c] + ": its names are like '" + model.images[0].name + "'");
+    if (globs.size() == 1)
+        return all;
+    for (std::vector<std::string>& ofCamera : names)
+        ofCamera = viewNames(ofCamera);
+    takeOffCameras(names);
+    for (size_t c = 0; c < globs.size(); c++)
+        for (size_t i = 0; i < images[c].size(); i++)
+            all[images[c][i]].moment = names[c][i];
+    return all;
+}
+
+std::vector<Taken> takenBy(const ColmapModel& model, int cameras, const std::vector<std::string>& globs, const std::string& folder)
+{
+    if (!globs.empty() && (int)globs.size() != cameras)
+        throw Failure(format("--images is given %d time%s, and the calibration has %d camera%s: give it for each", (int)globs.size(),
+                             globs.size() == 1 ? "" : "s", cameras, cameras == 1 ? "" : "s"));
+    if (globs.empty() && cameras > 1)
+    {
+        const ColmapRig* const rig = rigOf(model, cameras);
+        if (!rig)
+            throw Failure(format("the calibration has %d cameras, and '%s' no rig of as many: say with --images='GLOB' for each camera "
+                                 "which images are its own", cameras, folder.c_str()));
+        return takenByRig(model, *rig);
+    }
+    return takenByNames(model, globs.empty() ? std::vector<std::string>{"*"} : globs);
+}
+
+int pointCount(const ColmapImage& image)
+{
+    return (int)std::count_if(image.pixels.begin(), image.pixels.end(), [](const ColmapPixel& p) { return p.point != NO_COLMAP_POINT; });
+}
+
+void requireSizes(const ColmapModel& model, const RigModel& rig, const std::vector<Taken>& taken)
+{
+    std::unordered_map<uint32_t, cv::Size> sizes;
+    for (const ColmapCamera& camera : model.cameras)
+        sizes[camera.id] = cv::Size((int)camera.width, (int)camera.height);
+    for (size_t i = 0; i < model.images.size(); i++)
+    {
+        if (taken[i].camera < 0)
+            continue;
+        const cv::Size is = sizes[model.images[i].camera], calibrated = rig.cameras[taken[i].camera]->imageSize();
+        if (!calibrated.empty() && is != calibrated)
+            throw Failure(format("image '%s' is of %dx%d pixels, and camera %d was calibrated with %dx%d: are the images raw, and of this "
+                                 "camera?", model.images[i].name.c_str(), is.width, is.height, taken[i].camera + 1, calibrated.width,
+                                 calibrated.height));
+    }
+}
+
+} // namespace
+
+Survey surveyOf(const ColmapModel& model, const RigModel& rig, const std::vector<std::string>& globs, const std::string& folder)
+{
+    const std::vector<Taken> taken = takenBy(model, (int)rig.cameras.size(), globs, folder);
+    requireSizes(model, rig, taken);
+    Survey survey;
+    survey.model = model;
+    std::unordered_map<uint64_t, int> indexOf;
+    for (size_t i = 0; i < model.points.size(); i++)
+        indexOf[model.points[i].id] = (int)i;
+    std::map<std::string, int> views;
+    for (size_t i = 0; i < model.images.size(); i++)
+    {
+        const ColmapImage& image = model.images[i];
+        const bool isUsed = taken[i].camera >= 0 && isPose(image.cam_from_world) && pointCount(image) >= MIN_POINTS;
+        survey.cameraOf.push_back(isUsed ? taken[i].camera : -1);
+        survey.viewOf.push_back(isUsed ? views.insert({taken[i].moment, (int)views.size()}).first->second : -1);
+        if (!isUsed)
+        {
+            survey.leftOut.push_back(image.name);
+            continue;
+        }
+        if (survey.viewOf[i] == (int)survey.views.size())
+            survey.views.push_back(taken[i].moment);
+        for (size_t k = 0; k < image.pixels.size(); k++)
+            if (image.pixels[k].point != NO_COLMAP_POINT)
+            {
+                survey.observations.push_back({survey.viewOf[i], taken[i].camera, indexOf[image.pixels[k].point]});
+                survey.pixels.push_back({image.pixels[k].x - COLMAP_CORNER, image.pixels[k].y - COLMAP_CORNER});
+                survey.sources.push_back({(int)i, (int)k});
+            }
+    }
+    if (survey.views.size() < 2)
+        throw Failure(format("'%s' has %d image%s with a pose and %d points or more: at least two are needed", folder.c_str(),
+                             survey.imageCount(), survey.imageCount() == 1 ? "" : "s", MIN_POINTS));
+    return survey;
+}
+
+} // namespace tools

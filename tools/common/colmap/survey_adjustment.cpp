@@ -1,0 +1,220 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#include "colmap/survey_adjustment.hpp"
+#include "console/failure.hpp"
+#include "console/progress.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace cv;
+using namespace cv::refract;
+
+namespace tools {
+
+namespace {
+
+const double NaN = std::numeric_limits<double>::quiet_NaN();
+
+std::vector<Mat> arraysOf(const std::vector<Vec3d>& vectors)
+{
+    std::vector<Mat> arrays;
+    for (const Vec3d& v : vectors)
+        arrays.push_back(Mat(v, true));
+    return arrays;
+}
+
+std::vector<Vec3d> vectorsOf(const std::vector<Mat>& arrays)
+{
+    std::vector<Vec3d> vectors;
+    for (const Mat& array : arrays)
+        vectors.push_back(Vec3d(array.ptr<double>()));
+    return vectors;
+}
+
+//! What is known of positions holds near these poses; adjusted again from there it holds where they are.
+void adjust(const Survey& survey, const BundleStart& bundle, const SurveyStart& start, bool robust, SurveyAdjustment& result,
+            std::vector<Point3d>& points, Mat& deviations)
+{
+    Fit& fit = result.bundle.fit;
+    std::vector<Mat> Rs, Ts;
+    for (const RigidTransform& place : fit.rig.extrinsics)
+    {
+        Rs.push_back(Mat(place.R, true));
+        Ts.push_back(Mat(place.T, true));
+    }
+    const std::vector<Mat> known = covariancesOfPoses(start, result.rvecs, result.tvecs);
+    std::vector<Mat> rvecs = arraysOf(result.rvecs), tvecs = arraysOf(result.tvecs);
+    const int flags = bundle.flags | (robust ? GLASS_ROBUST : 0) | (known.empty() ? 0 : GLASS_USE_POSES);
+    const TermCriteria criteria(TermCriteria::COUNT + TermCriteria::EPS, 1000, 1e-12);
+    Mat errors;
+    adjusted([&] {
+        fit.rms = refractiveBundleAdjust(survey.observations, survey.pixels, fit.rig.cameras, fit.rig.windows, Rs, Ts, rvecs, tvecs, points,
+                                         start.lengths.rows(), fit.stdDeviations, fit.covariance, result.viewCovariances, deviations,
+                                         errors, result.used, flags, known, criteria, noArray(), noArray(),
+                                         bundle.covariance, start.lengths.commonStd());
+    });
+    for (size_t c = 1; c < Rs.size(); c++)
+        fit.rig.extrinsics[c] = {Rs[c], Ts[c]};
+    result.rvecs = vectorsOf(rvecs);
+    result.tvecs = vectorsOf(tvecs);
+}
+
+//! @return the squares of all errors that are used
+double setErrors(const Survey& survey, SurveyAdjustment& result)
+{
+    const RigModel& rig = result.bundle.fit.rig;
+    std::vector<double> squares(rig.cameras.size(), 0.);
+    std::vector<int> counts(rig.cameras.size(), 0);
+    result.errors.assign(survey.observations.size(), NaN);
+    std::vector<std::vector<int>> rows(survey.views.size()*rig.cameras.size());
+    for (size_t i = 0; i < survey.observations.size(); i++)
+        rows[survey.observations[i][0]*rig.cameras.size() + survey.observations[i][1]].push_back((int)i);
+    for (size_t image = 0; image < rows.size(); image++)
+    {
+        const int view = (int)(image/rig.cameras.size()), camera = (int)(image % rig.cameras.size());
+        if (rows[image].empty() || std::isnan(result.rvecs[view][0]))
+            continue;
+        const RigidTransform pose = rig.extrinsics[camera]*result.poseOf(view);
+        std::vector<Point3d> points;
+        std::vector<Point2d> pixels;
+        for (int row : rows[image])
+            points.push_back(result.bundle.points[survey.observations[row][2]]);
+        refractiveProjectPoints(points, rotationVector(pose.R), pose.T, rig.cameras[camera], pixels);
+        for (size_t k = 0; k < pixels.size(); k++)
+        {
+            const int row = rows[image][k];
+            result.errors[row] = norm(pixels[k] - survey.pixels[row]);
+            if (result.used[row])
+            {
+                squares[camera] += result.errors[row]*result.errors[row];
+                counts[camera]++;
+            }
+        }
+    }
+    double all = 0.;
+    for (size_t c = 0; c < squares.size(); c++)
+    {
+        result.bundle.rmsOfCamera.push_back(counts[c] ? std::sqrt(squares[c]/counts[c]) : -1.);
+        all += squares[c];
+    }
+    return all;
+}
+
+void setPoints(const Survey& survey, const std::vector<Point3d>& points, const Mat& deviations, SurveyAdjustment& result)
+{
+    std::vector<int> seen(points.size(), 0);
+    result.images.assign(points.size(), 0);
+    for (size_t i = 0; i < survey.observations.size(); i++)
+    {
+        seen[survey.observations[i][2]]++;
+        result.images[survey.observations[i][2]] += result.used[i];
+    }
+    for (size_t i = 0; i < points.size(); i++)
+    {
+        const Vec3d s(deviations.ptr<double>((int)i));
+        const bool found = std::isfinite(points[i].x + s[0] + s[1] + s[2]);
+        result.bundle.points.push_back(found ? points[i] : Point3d(NaN, NaN, NaN));
+        result.bundle.sigma.push_back(found ? s : Vec3d::all(NaN));
+        result.bundle.status.push_back(found ? (uchar)REFRACT_OK : seen[i] < 2 ? (uchar)REFRACT_NOT_FINITE : INCONSISTENT);
+        result.bundle.seenPixels += seen[i] > 1 ? seen[i] : 0;
+        result.bundle.usedPixels += result.images[i];
+    }
+}
+
+//! Of the directions from where the cameras were.
+void setAngles(const Survey& survey, SurveyAdjustment& result)
+{
+    const size_t count = result.bundle.points.size();
+    std::vector<std::vector<Vec3d>> directions(count);
+    std::vector<double> nearest(count, std::numeric_limits<double>::infinity());
+    for (size_t i = 0; i < survey.observations.size(); i++)
+    {
+        const Vec3i& o = survey.observations[i];
+        if (!result.used[i])
+            continue;
+        const RigidTransform pose = result.bundle.fit.rig.extrinsics[o[1]]*result.poseOf(o[0]);
+        const Vec3d direction = Vec3d(result.bundle.points[o[2]]) - pose.inverse(Vec3d());
+        nearest[o[2]] = std::min(nearest[o[2]], norm(direction));
+        directions[o[2]].push_back(direction/norm(direction));
+    }
+    result.angles.assign(count, NaN);
+    for (size_t i = 0; i < count; i++)
+    {
+        double least = 1.;
+        for (size_t a = 0; a < directions[i].size(); a++)
+            for (size_t b = 0; b < a; b++)
+                least = std::min(least, directions[i][a].dot(directions[i][b]));
+        if (std::isfinite(result.bundle.points[i].x))
+            result.angles[i] = std::acos(std::min(1., least))*180./CV_PI;
+        result.largeErrors += norm(result.bundle.sigma[i]) > 0.1*nearest[i];
+    }
+}
+
+//! Two views and their distance: the covariances between them are not known, and are left out where the frame is one of the two.
+void setScaleStd(SurveyAdjustment& result)
+{
+    size_t frame = 0;
+    while (frame < result.rvecs.size() && std::isnan(result.rvecs[frame][0]))
+        frame++;
+    result.scaleStd = std::numeric_limits<double>::infinity();
+    for (size_t view = frame + 1; view < result.rvecs.size(); view++)
+    {
+        const Vec3d base = result.centreOf((int)view) - result.centreOf((int)frame);
+        const double length = norm(base), variance = base.dot(result.centreCovariance((int)view)*base)/(length*length);
+        if (length > 0 && std::isfinite(variance))
+            result.scaleStd = std::min(result.scaleStd, std::sqrt(variance)/length);
+    }
+}
+
+} // namespace
+
+Matx33d SurveyAdjustment::centreCovariance(int view) const
+{
+    // centre = -R^T t
+    Mat jacobian;
+    Matx33d R;
+    Rodrigues(rvecs[view], R, jacobian);
+    Matx<double, 3, 6> J;
+    for (int r = 0; r < 3; r++)
+        for (int k = 0; k < 3; k++)
+        {
+            J(r, k) = 0.;
+            for (int c = 0; c < 3; c++)
+                J(r, k) -= jacobian.at<double>(k, 3*c + r)*tvecs[view][c];
+            J(r, 3 + k) = -R(k, r);
+        }
+    return J*Matx66d(viewCovariances[view].ptr<double>())*J.t();
+}
+
+SurveyAdjustment adjustSurvey(const Survey& survey, const BundleStart& bundle, const SurveyStart& start, bool robust, bool quiet)
+{
+    SurveyAdjustment result;
+    result.bundle.fit.rig = bundle.rig.clone();
+    result.rvecs = start.rvecs;
+    result.tvecs = start.tvecs;
+    std::vector<Point3d> points = start.points;
+    Mat deviations;
+    const int rounds = start.positions.empty() ? 1 : 2;
+    Progress progress("adjusting", rounds, quiet);
+    for (int round = 0; round < rounds; round++)
+    {
+        progress.at(format("%zu views, %zu points, %zu observations", survey.views.size(), points.size(), survey.observations.size()));
+        result.bundle.fit.rig = bundle.rig.clone();     // what is known of it is known of these values
+        adjust(survey, bundle, start, robust, result, points, deviations);
+        for (size_t i = 0; i < points.size(); i++)
+            if (round + 1 < rounds && !std::isfinite(points[i].x))
+                points[i] = start.points[i];
+        progress.step();
+    }
+    setPoints(survey, points, deviations, result);
+    const double squares = setErrors(survey, result);
+    setAngles(survey, result);
+    setScaleStd(result);
+    const int known = start.positions.empty() ? 6 : 3*(int)start.positions.size();      // the frame, or positions
+    setNoise(bundle, start.lengths, squares, 6*(int)survey.views.size() - known, result.bundle);
+    return result;
+}
+
+} // namespace tools

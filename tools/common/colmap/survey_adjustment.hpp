@@ -1,0 +1,36 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#ifndef REFRACT_TOOLS_SURVEY_ADJUSTMENT_HPP
+#define REFRACT_TOOLS_SURVEY_ADJUSTMENT_HPP
+
+#include "bundle/bundle_adjustment.hpp"
+#include "colmap/survey_start.hpp"
+
+namespace tools {
+
+//! Cameras, windows, poses and points that fit a survey best.
+struct SurveyAdjustment
+{
+    BundleAdjustment bundle;                    //!< its points are those of the model; less the start's origin
+    std::vector<cv::Vec3d> rvecs, tvecs;        //!< scene -> camera 1, of each view
+    std::vector<cv::Mat> viewCovariances;       //!< 6x6 each; 0: it is the frame
+    std::vector<uchar> used;                    //!< of each observation
+    std::vector<double> errors;                 //!< of each observation, px: where it was seen from where it is projected; NaN: no point
+    std::vector<int> images;                    //!< of each point: how many observations are used
+    std::vector<double> angles;                 //!< of each point: the largest between its rays, degrees
+    double scaleStd = 0.;                       //!< relative, of the distance that is known best between two places of the rig
+    int largeErrors = 0;                        //!< points whose +- is more than a tenth of their distance
+
+    RigidTransform poseOf(int view) const { return tools::transformOf(rvecs[view], tvecs[view]); }
+    //! Where camera 1 was.
+    cv::Vec3d centreOf(int view) const { return poseOf(view).inverse(cv::Vec3d()); }
+    cv::Matx33d centreCovariance(int view) const;
+};
+
+//! Throws Failure that says what the images do not determine, or why there is no answer.
+SurveyAdjustment adjustSurvey(const Survey& survey, const BundleStart& bundle, const SurveyStart& start, bool robust, bool quiet);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_SURVEY_ADJUSTMENT_HPP

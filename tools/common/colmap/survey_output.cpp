@@ -1,0 +1,266 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#include "colmap/survey_output.hpp"
+#include "bundle/bundle_output.hpp"
+#include "console/csv.hpp"
+#include "console/json.hpp"
+#include "console/table.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <ostream>
+#include <sstream>
+
+using namespace cv;
+
+namespace tools {
+
+namespace {
+
+const double DEGREES = 180./CV_PI;
+
+double median(std::vector<double> values)
+{
+    values.erase(std::remove_if(values.begin(), values.end(), [](double v) { return std::isnan(v); }), values.end());
+    if (values.empty())
+        return std::numeric_limits<double>::quiet_NaN();
+    std::nth_element(values.begin(), values.begin() + values.size()/2, values.end());
+    return values[values.size()/2];
+}
+
+Vec3d medianStd(const std::vector<Vec3d>& stds)
+{
+    Vec3d medians;
+    for (int k = 0; k < 3; k++)
+    {
+        std::vector<double> of;
+        for (const Vec3d& std : stds)
+            of.push_back(std[k]);
+        medians[k] = median(of);
+    }
+    return medians;
+}
+
+void putNumbers(std::ostream& csv, const Vec3d& numbers)
+{
+    for (double number : numbers.val)
+        std::isnan(number) ? csv << ",nan" : csv << ',' << number;
+}
+
+Vec3d stdsOf(const Matx33d& covariance)
+{
+    return {std::sqrt(covariance(0, 0)), std::sqrt(covariance(1, 1)), std::sqrt(covariance(2, 2))};
+}
+
+//! Scene with its origin -> camera 1.
+RigidTransform placed(const SurveyResult& result, int view)
+{
+    const RigidTransform pose = result.adjustment.poseOf(view);
+    return {pose.R, pose.T - pose.R*result.start.origin};
+}
+
+std::vector<std::string> withoutAnswer(const SurveyResult& result)
+{
+    std::vector<std::string> ids;
+    for (size_t i = 0; i < result.survey.model.points.size(); i++)
+        if (result.adjustment.bundle.status[i])
+            ids.push_back(std::to_string(result.survey.model.points[i].id));
+    return ids;
+}
+
+//! Of the places of camera 1.
+Vec3d medianPlaceStd(const SurveyAdjustment& adjustment)
+{
+    std::vector<Vec3d> stds;
+    for (size_t view = 0; view < adjustment.rvecs.size(); view++)
+        stds.push_back(stdsOf(adjustment.centreCovariance((int)view)));
+    return medianStd(stds);
+}
+
+ColmapCamera cameraOf(const NearestPinhole& pinhole, int camera)
+{
+    ColmapCamera result;
+    const Mat lens = pinhole.camera->lensParameters();
+    result.id = (uint32_t)camera + 1;
+    result.model = pinhole.camera->lensModel() == "fisheye" ? "OPENCV_FISHEYE" : "OPENCV";
+    result.width = (uint64_t)pinhole.camera->imageSize().width;
+    result.height = (uint64_t)pinhole.camera->imageSize().height;
+    result.parameters.assign(lens.ptr<double>(), lens.ptr<double>() + lens.total());
+    for (int i : {2, 3})
+        result.parameters[i] += COLMAP_CORNER;
+    return result;
+}
+
+//! The calibration's rig in the model's place: one, and a frame of each view.
+void addRig(const SurveyResult& result, ColmapModel& model)
+{
+    const RigModel& rig = result.adjustment.bundle.fit.rig;
+    ColmapRig own;
+    own.id = 1;
+    for (size_t c = 0; c < rig.cameras.size(); c++)
+        own.sensors.push_back({COLMAP_CAMERA, (uint32_t)c + 1, (uint8_t)(c > 0), colmapPoseOf(rig.extrinsics[c])});
+    model.rigs = {own};
+    model.frames.clear();
+    for (size_t view = 0; view < result.survey.views.size(); view++)
+        model.frames.push_back({(uint32_t)view + 1, 1, colmapPoseOf(placed(result, (int)view)), {}});
+    for (size_t i = 0; i < result.survey.viewOf.size(); i++)
+        if (result.survey.viewOf[i] >= 0)
+            model.frames[result.survey.viewOf[i]].data.push_back({COLMAP_CAMERA, (uint32_t)result.survey.cameraOf[i] + 1,
+                                                                  result.survey.model.images[i].id});
+}
+
+} // namespace
+
+std::vector<NearestPinhole> pinholesOf(const Survey& survey, const SurveyAdjustment& adjustment)
+{
+    const RigModel& rig = adjustment.bundle.fit.rig;
+    std::vector<std::vector<Point3d>> seen(rig.cameras.size());
+    for (size_t i = 0; i < survey.observations.size(); i++)
+    {
+        const Vec3i& o = survey.observations[i];
+        if (adjustment.used[i])
+            seen[o[1]].push_back(Point3d((rig.extrinsics[o[1]]*adjustment.poseOf(o[0]))*Vec3d(adjustment.bundle.points[o[2]])));
+    }
+    std::vector<NearestPinhole> pinholes;
+    for (size_t c = 0; c < seen.size(); c++)
+        pinholes.push_back(nearestPinhole(rig.cameras[c], seen[c]));
+    return pinholes;
+}
+
+std::string scaleText(const SurveyStart& start, const SurveyAdjustment& adjustment)
+{
+    return start.scale + format(", +- %.2g %%", 100.*adjustment.scaleStd);
+}
+
+std::string surveyPointsCsv(const SurveyResult& result)
+{
+    std::ostringstream csv;
+    csv.precision(12);
+    csv << "id,x,y,z,sx,sy,sz,images,angle_deg,status\n";
+    for (size_t i = 0; i < result.survey.model.points.size(); i++)
+    {
+        csv << result.survey.model.points[i].id;
+        putNumbers(csv, Vec3d(result.adjustment.bundle.points[i]) + result.start.origin);
+        putNumbers(csv, result.adjustment.bundle.sigma[i]);
+        csv << ',' << result.adjustment.images[i] << ',';
+        std::isnan(result.adjustment.angles[i]) ? csv << "nan" : csv << format("%.4g", result.adjustment.angles[i]);
+        csv << ',' << (int)result.adjustment.bundle.status[i] << '\n';
+    }
+    return csv.str();
+}
+
+std::string surveyPosesCsv(const SurveyResult& result)
+{
+    std::ostringstream csv;
+    csv.precision(12);
+    csv << "view,rx_deg,ry_deg,rz_deg,tx,ty,tz,srx_deg,sry_deg,srz_deg,stx,sty,stz,cx,cy,cz,scx,scy,scz\n";
+    for (size_t view = 0; view < result.survey.views.size(); view++)
+    {
+        const RigidTransform pose = placed(result, (int)view);
+        const Matx66d covariance(result.adjustment.viewCovariances[view].ptr<double>());
+        csv << cellOf(result.survey.views[view]);
+        putNumbers(csv, result.adjustment.rvecs[view]*DEGREES);
+        putNumbers(csv, pose.T);
+        putNumbers(csv, stdsOf(covariance.get_minor<3, 3>(0, 0))*DEGREES);
+        putNumbers(csv, stdsOf(covariance.get_minor<3, 3>(3, 3)));
+        putNumbers(csv, pose.inverse(Vec3d()));
+        putNumbers(csv, stdsOf(result.adjustment.centreCovariance((int)view)));
+        csv << '\n';
+    }
+    return csv.str();
+}
+
+ColmapModel refractedModel(const SurveyResult& result)
+{
+    const SurveyAdjustment& adjustment = result.adjustment;
+    const RigModel& rig = adjustment.bundle.fit.rig;
+    ColmapModel model = result.survey.model;
+    model.cameras.clear();
+    for (size_t c = 0; c < result.pinholes.size(); c++)
+        model.cameras.push_back(cameraOf(result.pinholes[c], (int)c));
+    for (size_t i = 0; i < model.images.size(); i++)
+    {
+        if (result.survey.viewOf[i] < 0)
+            continue;
+        const int camera = result.survey.cameraOf[i];
+        model.images[i].camera = (uint32_t)camera + 1;
+        model.images[i].cam_from_world = colmapPoseOf(rig.extrinsics[camera]*placed(result, result.survey.viewOf[i]));
+        for (ColmapPixel& pixel : model.images[i].pixels)
+            pixel.point = NO_COLMAP_POINT;
+    }
+    for (size_t i = 0; i < model.points.size(); i++)
+    {
+        model.points[i].X = Vec3d(adjustment.bundle.points[i]) + result.start.origin;
+        model.points[i].track.clear();
+        model.points[i].error = 0.;
+    }
+    for (size_t k = 0; k < adjustment.used.size(); k++)
+    {
+        if (!adjustment.used[k])
+            continue;
+        ColmapImage& image = model.images[result.survey.sources[k][0]];
+        ColmapPoint& point = model.points[result.survey.observations[k][2]];
+        image.pixels[result.survey.sources[k][1]].point = point.id;
+        point.track.push_back({image.id, (uint32_t)result.survey.sources[k][1]});
+        point.error += adjustment.errors[k];
+    }
+    std::vector<ColmapImage> kept;
+    for (size_t i = 0; i < model.images.size(); i++)
+        if (result.survey.viewOf[i] >= 0)
+            kept.push_back(model.images[i]);
+    model.images = kept;
+    const auto isLeftOut = [](const ColmapPoint& point) { return point.track.empty() || std::isnan(point.X[0]); };
+    model.points.erase(std::remove_if(model.points.begin(), model.points.end(), isLeftOut), model.points.end());
+    for (ColmapPoint& point : model.points)
+        point.error /= (double)point.track.size();
+    addRig(result, model);
+    return model;
+}
+
+std::string surveyJson(const SurveyResult& result, const std::string& command)
+{
+    Json json = adjustmentJson(result.adjustment.bundle, result.findings, command, result.unit);
+    json.set("scale_std", result.adjustment.scaleStd);
+    json.set("images", result.survey.imageCount());
+    json.set("images_left_out", result.survey.leftOut);
+    json.set("views", result.survey.views.size());
+    json.set("left_out", withoutAnswer(result));
+    json.set("points_with_large_std", result.adjustment.largeErrors);
+    const Vec3d ofPoints = medianStd(result.adjustment.bundle.sigma), ofPlaces = medianPlaceStd(result.adjustment);
+    json.set("median_point_std", std::vector<double>(ofPoints.val, ofPoints.val + 3));
+    json.set("median_position_std", std::vector<double>(ofPlaces.val, ofPlaces.val + 3));
+    Json pinholes = Json::array();
+    for (const NearestPinhole& pinhole : result.pinholes)
+        pinholes.append({{"rms", pinhole.rms}, {"max", pinhole.max}});
+    json.set("nearest_pinholes_px", pinholes);
+    return json.text(2) + "\n";
+}
+
+void printSurvey(std::ostream& out, const SurveyResult& result)
+{
+    const SurveyAdjustment& adjustment = result.adjustment;
+    const Fit& fit = adjustment.bundle.fit;
+    out << result.findings.verdict()
+        << format(": %.3g px RMS, noise %.3g px a coordinate, %.0f degrees of freedom\n", fit.rms, fit.sigma, fit.dof);
+    out << fittedLine("scale: ", {result.findings.scale}) << "\n";
+    printCorrections(out, result.findings, result.unit);
+    const Vec3d places = medianPlaceStd(adjustment), points = medianStd(adjustment.bundle.sigma);
+    out << format("%d images, x, y, z +- %.2g, %.2g, %.2g (median)\n", result.survey.imageCount(), places[0], places[1], places[2]);
+    out << format("%d of %zu points, x, y, z +- %.2g, %.2g, %.2g (median)", adjustment.bundle.answers(), adjustment.bundle.points.size(),
+                  points[0], points[1], points[2])
+        << (adjustment.largeErrors ? format("; %d hardly known", adjustment.largeErrors) : "") << "\n";
+    const std::vector<std::string> lost = withoutAnswer(result);
+    if (adjustment.bundle.usedPixels < adjustment.bundle.seenPixels)
+        out << fittedLine(format("pixels left out: %d of %d", adjustment.bundle.seenPixels - adjustment.bundle.usedPixels,
+                                 adjustment.bundle.seenPixels) + (lost.empty() ? "" : "; points: "), lost) << "\n";
+    if (!result.survey.leftOut.empty())
+        out << fittedLine("images left out: ", result.survey.leftOut) << "\n";
+    const auto isBetter = [](const NearestPinhole& a, const NearestPinhole& b) { return a.rms < b.rms; };
+    const auto worst = std::max_element(result.pinholes.begin(), result.pinholes.end(), isBetter);
+    out << format("a pinhole in place of the window is off by %.2g px RMS, %.2g px at most\n", worst->rms, worst->max);
+    if (!result.findings.weak.empty())
+        out << fittedLine("hardly determined: ", result.findings.weak) << "\n";
+}
+
+} // namespace tools

@@ -1,0 +1,50 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#ifndef REFRACT_TOOLS_SURVEY_OUTPUT_HPP
+#define REFRACT_TOOLS_SURVEY_OUTPUT_HPP
+
+#include "bundle/bundle_findings.hpp"
+#include "colmap/nearest_pinhole.hpp"
+#include "colmap/survey_adjustment.hpp"
+
+#include <iosfwd>
+
+/* What refract_bundle --colmap writes and says. */
+namespace tools {
+
+//! All that is known in the end.
+struct SurveyResult
+{
+    Survey survey;
+    SurveyStart start;
+    SurveyAdjustment adjustment;
+    BundleFindings findings;
+    std::vector<NearestPinhole> pinholes;       //!< of each camera
+    std::string unit;
+};
+
+//! Of each camera, by the points that it sees.
+std::vector<NearestPinhole> pinholesOf(const Survey& survey, const SurveyAdjustment& adjustment);
+
+//! "the window alone, +- 2.1 %"
+std::string scaleText(const SurveyStart& start, const SurveyAdjustment& adjustment);
+
+//! id,x,y,z,sx,sy,sz,images,angle_deg,status, one row a point of the model.
+std::string surveyPointsCsv(const SurveyResult& result);
+
+//! view,rx_deg,ry_deg,rz_deg,tx,ty,tz and the std of each, then where camera 1 was, and its std.
+std::string surveyPosesCsv(const SurveyResult& result);
+
+/** The model with refined poses and points; its pixels are the raw ones that were used, its cameras (1, 2, ... as in the calibration)
+the nearest pinholes. A point's error is that of the cameras with their windows. */
+ColmapModel refractedModel(const SurveyResult& result);
+
+std::string surveyJson(const SurveyResult& result, const std::string& command);
+
+//! At most ten lines of 80 columns.
+void printSurvey(std::ostream& out, const SurveyResult& result);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_SURVEY_OUTPUT_HPP
