@@ -281,6 +281,9 @@ void takeNormals(const Options& o, RigOptions& rig)
     if (o.normals.size() > 1 && (int)o.normals.size() != o.images.cameraCount())
         throw Failure(format("--normal is given %zu times, and there are %d cameras: give it once for all, or once for each",
                              o.normals.size(), o.images.cameraCount()));
+    if (o.normals.size() > 1 && o.sharedWindow)
+        throw Failure(format("--normal is given %zu times, and all cameras look through one window: give that of camera 1",
+                             o.normals.size()));
     for (const std::string& text : o.normals)
     {
         const cv::Vec3d n = parseVector(text, "--normal");

@@ -118,8 +118,8 @@ int refract_check_main(int argc, char** argv)
         const Calibration calibration = options.conditions.appliedTo(asCalibrated, options.calibration);
         std::vector<std::string> inputs = options.inputs();
         inputs.push_back(command.settings());
-        checkOutputs({{"--summary", options.summary, OUTPUT_TEXT}, {"--history", options.history, OUTPUT_SHARED},
-                      {"--history-page", options.pageFile(), OUTPUT_SHARED}}, inputs);
+        checkOutputs({{"--summary", options.summary, options.hasHistory() ? OUTPUT_SHARED : OUTPUT_TEXT},
+                      {"--history", options.history, OUTPUT_SHARED}, {"--history-page", options.pageFile(), OUTPUT_SHARED}}, inputs);
         std::unique_ptr<KeptCheck> kept = keptCheck(options, asCalibrated, command);
         CheckInput input = inputOf(options, calibration);
         const CheckImages images = readCheckImages(options, calibration, command);

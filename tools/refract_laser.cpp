@@ -389,7 +389,8 @@ int measureWithSheet(const Options& o, const Calibration& calibration, const Com
         scan.line = findScanLine(laser.signal(image, path), calibration, sheet, depth);
         scan.measured = measureOnSheet(calibration, sheet, scan.line.points);
         if (scan.line.points.empty())
-            command.warn("no line was found in '" + path + "'");
+            command.warn(!scan.line.mixed ? "no line was found in '" + path + "'"
+                         : "of the line in '" + path + "' all points are near its ends or steps, where two surfaces are seen");
         for (size_t i = 0; i < scan.line.points.size(); i++)
             if (scan.measured.status[i] == REFRACT_OK)
             {

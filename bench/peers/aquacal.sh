@@ -32,7 +32,9 @@ for scenario in minimal realistic; do
   peer time "$work/refract.time" "$calib" $(cat "$work/options") --out="$work/calib.yml" --quiet --no-cross-validation || true
   peer compare $scenario "$seed" "$work" refract
   [ $scenario = minimal ] && seconds=1500 || seconds=$limit
-  timeout "$seconds" "$folder/venv/bin/python" bench/peers/aquacal_scenarios.py solve $scenario "$seed" "$work" >"$work/log" 2>&1 ||
-    { echo "| $scenario | aquacal | no answer within $seconds s on the clock | | | |"; continue; }
+  timeout "$seconds" "$folder/venv/bin/python" bench/peers/aquacal_scenarios.py solve $scenario "$seed" "$work" >"$work/log" 2>&1 || {
+    [ $? = 124 ] && why="no answer within $seconds s on the clock" || why="failed: $(tail -n 1 "$work/log")"
+    echo "| $scenario | aquacal | $why | | | |"; continue
+  }
   peer compare $scenario "$seed" "$work" aquacal
 done

@@ -18,7 +18,7 @@ namespace tools {
 namespace {
 
 const double NONE = std::numeric_limits<double>::quiet_NaN();
-const size_t LENGTHS_ON_PAGE = 12, BUDGET_ON_PAGE = 8, INPUTS_ON_PAGE = 30, LONG_NAME = 34, LONG_COMMAND = 300;
+const size_t LENGTHS_ON_PAGE = 12, BUDGET_ON_PAGE = 8, LONG_NAME = 34, LONG_COMMAND = 300;
 
 //! As much as there is room for.
 std::string shortened(const std::string& text, size_t length)
@@ -128,9 +128,8 @@ std::string verdictOf(const Acceptance& a)
 PageList inputsOf(const Certificate& c)
 {
     PageList list;
-    for (size_t i = 0; i < std::min(INPUTS_ON_PAGE, c.inputs.size()); i++)
+    for (const CertificateInput& input : c.inputs)
     {
-        const CertificateInput& input = c.inputs[i];
         PageValues entry;
         entry.set("what", input.what);
         entry.set("name", input.name);
@@ -184,9 +183,6 @@ std::string certificateHtml(const Certificate& c)
     page.set("remarks", pageList(remarks));
     page.set("has_remarks", !remarks.empty());
     page.set("inputs", inputsOf(c));
-    page.set("has_more_inputs", c.inputs.size() > INPUTS_ON_PAGE);
-    page.set("more_inputs", format("And %zu more, which the DCC and the summary name.",
-                                   c.inputs.size() - std::min(INPUTS_ON_PAGE, c.inputs.size())));
     page.set("calibration_time", orNotStated(c.calibrationTime));
     page.set("calibration_verdict", orNotStated(c.calibrationVerdict));
     page.set("version", REFRACT_VERSION);

@@ -107,7 +107,7 @@ public:
                               "into that folder, and under such names?");
             else if (source.found.images.empty())
                 throw Failure("no image that came for '" + source.files.pattern() + "' shows the target: check --pattern and --size="
-                              + sizeText(rig_.target.size()) + ", light and focus");
+                              + rig_.target.sizeText() + ", light and focus");
         return images();
     }
 

@@ -9,12 +9,12 @@
 
 namespace tools {
 
-//! What one process of several may have at a time: a file of this name, which goes with the lock. Where a signal ends the process
-the file stays, and the lock goes.
+/** What one process of several may have at a time: a file of this name, which goes with the lock. Where a signal ends the process the file
+stays, and the lock goes. */
 class FileLock
 {
 public:
-    //! Null: another process has it. Throws Failure if there can be no such file.
+    //! Null: another process has it. A file system without locks keeps nobody apart. Throws Failure if there can be no such file.
     static std::unique_ptr<FileLock> tryOnce(const std::string& file);
     ~FileLock();
     FileLock(const FileLock&) = delete;
