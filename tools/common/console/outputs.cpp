@@ -65,7 +65,7 @@ void checkOutputs(const std::vector<Output>& outputs, const std::vector<std::str
 {
     std::map<std::string, std::string> read;        // canonical name -> as the caller wrote it
     for (const std::string& input : inputs)
-        for (const std::string& file : matchingFiles(input))
+        for (const std::string& file : input.find("%d") != std::string::npos ? numberedFiles(input) : matchingFiles(input))
             read[canonical(file)] = file;
     std::map<std::string, const Output*> written;
     for (const Output& output : outputs)
