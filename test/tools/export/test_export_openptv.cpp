@@ -78,9 +78,16 @@ TEST_CASE("What OpenPTV has none like is refused by name", "[export][foreign]")
 {
     CHECK(failure(rig({}, Point2d(650, 490))) == "written");
     CHECK_THAT(failure(rig({-0.1, 0, 0, 0, 0}, Point2d(650, 490))), Catch::Contains("OpenPTV's is about the middle of the image"));
-    CHECK_THAT(failure(rig({-0.1, 0, 0, 1e-4, 0}, Point2d(639.5, 511.5))), Catch::Contains("camera1 has a lens that OpenPTV has none like"));
+    CHECK_THAT(failure(rig({-0.1, 0, 0, 1e-4, 0}, Point2d(639.5, 511.5))),
+               Catch::Contains("camera1 has a lens that OpenPTV has none like"));
     Calibration calibration = rig({}, Point2d(650, 490));
-    GlassWindow window = calibration.cameras[1].camera->window();
+    const cv::Ptr<RefractiveCamera> second = calibration.cameras[1].camera;
+    const GlassWindow pane = second->window();
+    calibration.cameras[1].camera = RefractiveCamera::create(Matx33d(2000, 0, 650, 0, 2000, 490, 0, 0, 1), cv::noArray(), pane);
+    calibration.cameras[1].camera->setImageSize(second->imageSize());
+    CHECK_THAT(failure(calibration), Catch::Contains("camera2 has another fx/fy"));
+    calibration.cameras[1].camera = second;
+    GlassWindow window = pane;
     window.thickness[0] = 7;
     calibration.cameras[1].camera->setWindow(window);
     CHECK_THAT(failure(calibration), Catch::Contains("camera2 has another pane"));

@@ -7,7 +7,8 @@
 #include <cmath>
 
 /* OpenPTV knows flat windows: what it can be told is exact. formats/openptv.cpp has its formula, and where its frames point. Its world
-begins in the scene's medium, before the window of camera 1, with the axes of that camera, y up. */
+begins in the scene's medium, before the window of camera 1, with the axes of that camera, y up. What scx scales differs between its
+versions, so it is 1, and the shape of a pixel is that of ptv.par. */
 
 namespace tools {
 
@@ -41,10 +42,18 @@ GlassWindow paneOf(const Calibration& calibration, size_t c)
         if (wedge != cv::Vec2d())
             throw Failure(name + " looks through a window with a wedge, and OpenPTV has none: calibrate with --wedge-std=0");
     if (window.thickness != first.thickness || window.index != first.index || window.innerIndex != first.innerIndex
-        || window.outerIndex != first.outerIndex || calibration.cameras[c].camera->imageSize() != calibration.cameras[0].camera->imageSize())
+        || window.outerIndex != first.outerIndex
+        || calibration.cameras[c].camera->imageSize() != calibration.cameras[0].camera->imageSize())
         throw Failure(name + " has another pane, other media or another image size than camera1, and OpenPTV has one of each for all "
                       "cameras: calibrate with --exact, or give thickness and indices with a deviation of 0");
     return window;
+}
+
+//! Width of a pixel over its height.
+double shapeOfPixels(const RefractiveCamera& camera)
+{
+    const cv::Mat K = camera.cameraMatrix();
+    return K.at<double>(1, 1)/K.at<double>(0, 0);
 }
 
 double thicknessOf(const GlassWindow& window) { return window.thickness[0]; }
@@ -60,11 +69,12 @@ std::string orientationOf(const RefractiveCamera& camera, const Matx33d& cam_fro
         throw Failure(name + "'s window is not before the same water as that of camera 1, where OpenPTV's world begins");
     const Vec3d glass = cam_from_world.t()*window.normal*(-toOrigin);
     const cv::Mat K = camera.cameraMatrix();
-    const double c = K.at<double>(1, 1)*PIXEL, scale = K.at<double>(0, 0)/K.at<double>(1, 1);
-    const double xh = (K.at<double>(0, 2) + CORNER - camera.imageSize().width/2.)*PIXEL/scale;
+    const double c = K.at<double>(1, 1)*PIXEL;
+    const double xh = (K.at<double>(0, 2) + CORNER - camera.imageSize().width/2.)*PIXEL*shapeOfPixels(camera);
     const double yh = -(K.at<double>(1, 2) + CORNER - camera.imageSize().height/2.)*PIXEL;
     return lineOf({centre[0], centre[1], centre[2]})
-        + lineOf({std::atan2(-dm(1, 2), dm(2, 2)), std::asin(std::max(-1., std::min(1., dm(0, 2)))), std::atan2(-dm(0, 1), dm(0, 0))}) + "\n"
+        + lineOf({std::atan2(-dm(1, 2), dm(2, 2)), std::asin(std::max(-1., std::min(1., dm(0, 2)))), std::atan2(-dm(0, 1), dm(0, 0))})
+        + "\n"
         + lineOf({dm(0, 0), dm(0, 1), dm(0, 2)}) + lineOf({dm(1, 0), dm(1, 1), dm(1, 2)}) + lineOf({dm(2, 0), dm(2, 1), dm(2, 2)}) + "\n"
         + lineOf({xh, yh}) + lineOf({c}) + "\n" + lineOf({glass[0], glass[1], glass[2]});
 }
@@ -84,10 +94,11 @@ std::string lensOf(const RefractiveCamera& camera, const std::string& name)
     const double MIDDLE = 1e-9;
     if (isBent && std::max(std::abs(K.at<double>(0, 2) + CORNER - camera.imageSize().width/2.),
                            std::abs(K.at<double>(1, 2) + CORNER - camera.imageSize().height/2.)) > MIDDLE)
-        throw Failure(name + cv::format("'s distortion is about (%.6g, %.6g), and OpenPTV's is about the middle of the image: calibrate with a "
-                                        "lens file whose centre is there, or without distortion", K.at<double>(0, 2), K.at<double>(1, 2)));
+        throw Failure(name + cv::format("'s distortion is about (%.6g, %.6g), and OpenPTV's is about the middle of the image: calibrate "
+                                        "with a lens file whose centre is there, or without distortion", K.at<double>(0, 2),
+                                        K.at<double>(1, 2)));
     const double c = K.at<double>(1, 1)*PIXEL;
-    return lineOf({D[0]/std::pow(c, 2), D[1]/std::pow(c, 4), D[4]/std::pow(c, 6), 0., -D[2]/c, K.at<double>(0, 0)/K.at<double>(1, 1), 0.});
+    return lineOf({D[0]/std::pow(c, 2), D[1]/std::pow(c, 4), D[4]/std::pow(c, 6), 0., -D[2]/c, 1., 0.});
 }
 
 } // namespace
@@ -98,9 +109,10 @@ std::vector<ExportFile> openPtvFiles(const Calibration& calibration)
     const double beyond = 2*(first.distance + thicknessOf(first));
     const Vec3d origin = first.normal*beyond;
     const cv::Size size = calibration.cameras[0].camera->imageSize();
+    const double shape = shapeOfPixels(*calibration.cameras[0].camera), SAME = 1e-9;
     std::string names, control = lineOf({1}) + lineOf({0}) + lineOf({1});        // high pass, all cameras, TIFF
-    for (double number : {(double)size.width, (double)size.height, PIXEL, PIXEL, 0., first.innerIndex, first.index[0], first.outerIndex,
-                          thicknessOf(first)})
+    for (double number : {(double)size.width, (double)size.height, PIXEL*shape, PIXEL, 0., first.innerIndex, first.index[0],
+                          first.outerIndex, thicknessOf(first)})
         control += lineOf({number});
     std::vector<ExportFile> files;
     for (size_t c = 0; c < calibration.cameras.size(); c++)
@@ -108,6 +120,9 @@ std::vector<ExportFile> openPtvFiles(const Calibration& calibration)
         paneOf(calibration, c);
         const RefractiveCamera& camera = *calibration.cameras[c].camera;
         const RigidTransform& place = calibration.extrinsics[c];
+        if (std::abs(shapeOfPixels(camera) - shape) > SAME)
+            throw Failure(cv::format("camera%zu has another fx/fy than camera1, and OpenPTV has one shape of pixels for all cameras",
+                                     c + 1));
         const std::string name = cv::format("camera%zu", c + 1), image = cv::format("cam%zu.tif", c + 1);
         files.push_back({image + ".ori", orientationOf(camera, place.R*FLIP, place*origin, name)});
         files.push_back({image + ".addpar", lensOf(camera, name)});

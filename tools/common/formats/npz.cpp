@@ -12,8 +12,8 @@ namespace {
 
 bool isKnown(const std::string& type)
 {
-    return type.size() == 2 && std::string("iuf").find(type[0]) != std::string::npos && std::string("1248").find(type[1]) != std::string::npos
-        && (type[0] != 'f' || type[1] > '2');
+    const auto isOne = [](char c, const char* of) { return std::string(of).find(c) != std::string::npos; };
+    return type.size() == 2 && isOne(type[0], "iuf") && isOne(type[1], "1248") && (type[0] != 'f' || type[1] > '2');
 }
 
 //! Lists in lists, of numbers in the order of memory.
