@@ -16,6 +16,8 @@ TEST_CASE("Numbers have two digits of their uncertainty, in any unit", "[tools][
     CHECK(decimalsOf(123.) == -1);
     CHECK(rounded(1234.5, -1) == "1230");
     CHECK(rounded(0.01, 3, true) == "+0.010");
+    CHECK(rounded(-0.0004, 3, true) == "0.000");            // zero has no sign
+    CHECK(rounded(-0.0006, 3, true) == "-0.001");
 }
 
 TEST_CASE("What is not UTF-8 is known, and replaced", "[tools][rounded]")

@@ -86,14 +86,14 @@ std::vector<GumRow> rowsOnPage(const GumTable& table)
     return rows;
 }
 
-PageList budgetOf(const GumTable& table)
+PageList budgetOf(const GumTable& table, const std::string& unit)
 {
     PageList rows;
     for (const GumRow& row : rowsOnPage(table))
     {
         PageValues entry;
         entry.set("source", row.source);
-        entry.set("std", std::isnan(row.std) ? "" : row.given.empty() ? format("%.3g", row.std) : row.given);
+        entry.set("std", std::isnan(row.std) ? "" : row.given.empty() ? format("%.3g ", row.std) + unit : row.given);
         entry.set("sensitivity", std::isnan(row.sensitivity) ? "" : format("%.3g", row.sensitivity));
         entry.set("contribution", rounded(row.contribution, decimalsOf(table.u) + 1));
         entry.set("share", format("%.1f", 100.*row.share));
@@ -174,7 +174,7 @@ std::string certificateHtml(const Certificate& c)
     page.set("rule", DECISION_RULE);
     page.set("temperature", orNotStated(c.temperature));
     const GumTable& budget = c.budgets[0];
-    page.set("budget", budgetOf(budget));
+    page.set("budget", budgetOf(budget, a.unit));
     page.set("budget_of", budget.quantity);
     page.set("budget_result", "u = " + rounded(budget.u, decimalsOf(budget.u)) + ", effective degrees of freedom " + dofText(budget.dof)
              + format(", k = %.2f, U = ", budget.k) + rounded(budget.U, decimalsOf(budget.U)) + "; U of the test "

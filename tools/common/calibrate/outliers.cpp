@@ -92,7 +92,7 @@ bool areSame(const std::vector<Rejected>& a, const std::vector<Rejected>& b)
 std::string Rejected::sentence() const
 {
     return format("'%s' (camera %d, %s): %s: %s", view.c_str(), camera + 1, glass ? "through the window" : "direct",
-                  image ? "the whole image" : format("%d point(s)", points).c_str(), why.c_str());
+                  image ? "the whole image" : format("%d point%s", points, points == 1 ? "" : "s").c_str(), why.c_str());
 }
 
 Outliers rejectOutliers(RigData& data, const RigModel& start, int flags, int maxIterations)

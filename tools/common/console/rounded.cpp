@@ -20,7 +20,9 @@ int decimalsOf(double uncertainty)
 std::string rounded(double value, int decimals, bool sign)
 {
     const double unit = std::pow(10., -decimals), number = decimals < 0 ? unit*std::round(value/unit) : value;
-    return cv::format(sign ? "%+.*f" : "%.*f", std::max(0, decimals), number);
+    const std::string text = cv::format(sign ? "%+.*f" : "%.*f", std::max(0, decimals), number);
+    const bool isZero = text.find_first_of("123456789") == std::string::npos;       // which has no sign
+    return isZero && text.find_first_of("+-") == 0 ? text.substr(1) : text;
 }
 
 } // namespace tools

@@ -27,6 +27,17 @@ Vec2d commonScale(const std::vector<ErrorMap>& maps)
     return scale;
 }
 
+//! 1, 2, 5 of each decade, as gnuplot labels the ones alone.
+static std::string ticsOfLog(const Vec2d& scale)
+{
+    std::string tics;
+    for (double decade = std::pow(10., std::floor(std::log10(scale[0]))); decade <= scale[1]; decade *= 10.)
+        for (double digit : {1., 2., 5.})
+            if (digit*decade >= scale[0] && digit*decade <= scale[1])
+                tics += (tics.empty() ? "" : ", ") + format("%g", digit*decade);
+    return tics;
+}
+
 Figure drawErrorMap(const RigCalibration& c, const ErrorMap& map, Vec2d scale)
 {
     const Size size = c.data.imageSize[0];
@@ -39,7 +50,7 @@ Figure drawErrorMap(const RigCalibration& c, const ErrorMap& map, Vec2d scale)
     Plot plot(size);
     plot.data("cells", rows);
     plot << "set cblabel " << Plot::quoted("expected error, " + c.unit) << "\nset cbrange [" << scale[0] << ':' << scale[1]
-         << "]\n" << (scale[1] > DECADE*scale[0] ? "set logscale cb\n" : "")
+         << "]\n" << (scale[1] > DECADE*scale[0] ? "set logscale cb\nset cbtics (" + ticsOfLog(scale) + ")\n" : "")
          << "unset key\nset style fill solid noborder\n"      // gnuplot's own range leaves out cells that reach over the border
          << "plot $cells using 1:2:3:4:5 with boxxyerror linecolor palette\n";
     return {plot.svg(), format("half of the image within %.3g %s, 95 %% within %.3g %s, at worst %.3g %s",

@@ -295,7 +295,7 @@ std::vector<SummaryRow> budgetRows(const Assessment& a)
 {
     std::vector<SummaryRow> rows;
     for (const BudgetRow& row : a.budget)
-        rows.push_back({row.source, {row.given, format("%.2g", row.effect), format("%.3g", 100.*row.share)}});
+        rows.push_back({row.source, {row.given, format("%.2g", row.effect), format("%.1f", 100.*row.share)}});
     return rows;
 }
 
