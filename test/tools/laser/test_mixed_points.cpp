@@ -124,8 +124,9 @@ Tally tallyOf(int trials, unsigned salt)
         }
     }
     std::cout << "seed " << scenes::seed() << '\n'
-              << "[numbers] laser line over steps: " << 100.*tally.within/tally.points << " % of " << tally.points << " points within 1.96 sz, "
-              << tally.far << " farther than 5 sz off, the worst " << tally.worst << "; " << tally.leftOut << " left out\n";
+              << "[numbers] laser line over steps: " << 100.*tally.within/tally.points << " % of " << tally.points
+              << " points within 1.96 sz, " << tally.far << " farther than 5 sz off, the worst "
+              << tally.worst << "; " << tally.leftOut << " left out\n";
     return tally;
 }
 
