@@ -11,7 +11,7 @@
 const char CAMERAS_TXT[] = R"(# Camera list with one line of data per camera:
 #   CAMERA_ID, MODEL, WIDTH, HEIGHT, PARAMS[]
 # Number of cameras: 2
-1 SIMPLE_RADIAL 1024 768 1280 512 384 0.050000000000000003
+1 SIMPLE_RADIAL 1024 768 1280 512 384 0.05
 2 EQUIRECTANGULAR 1024 768 1024 768
 )";
 
@@ -19,8 +19,8 @@ const char IMAGES_TXT[] = R"(# Image list with two lines of data per image:
 #   IMAGE_ID, QW, QX, QY, QZ, TX, TY, TZ, CAMERA_ID, NAME
 #   POINTS2D[] as (X, Y, POINT3D_ID)
 # Number of images: 3, mean observations per image: 1
-1 0.5 -0.5 0.5 0.5 0.125 -2 5.0000000000000018 1 left/a.png
-924.00494419027132 470.75 -1 0.5 0.5 7
+1 0.5 -0.5 0.5 0.5 0.125 -2 5.000000000000002 1 left/a.png
+924.0049441902713 470.75 -1 0.5 0.5 7
 2 1 0 0 0 0 0 0 2 right/a.png
 
 3 0 0 0 0 0 0 0 1 left/b.png
@@ -29,7 +29,7 @@ const char IMAGES_TXT[] = R"(# Image list with two lines of data per image:
 
 const char POINTS_TXT[] = R"(# 3D point list with one line of data per point:
 #   POINT3D_ID, X, Y, Z, R, G, B, ERROR, TRACK[] as (IMAGE_ID, POINT2D_IDX)
-7 0.25 -1.5 1e-3 255 0 9 0.75 1 1 3 0
+7 0.25 -1.5 0.001 255 0 9 0.75 1 1 3 0
 )";
 
 const char RIGS_TXT[] = R"(# Rig calib list with one line of data per calib:

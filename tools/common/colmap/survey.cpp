@@ -17,16 +17,25 @@ using cv::format;
 RigidTransform transformOf(const ColmapPose& pose)
 {
     const cv::Vec4d q = pose.q/cv::norm(pose.q);
-    const cv::Vec3d v(q[1], q[2], q[3]);
-    const double sine = cv::norm(v), angle = 2*std::atan2(sine, q[0]);
-    return {rotationMatrix(sine > 0 ? v*(angle/sine) : cv::Vec3d()), pose.t};
+    const double w = q[0], x = q[1], y = q[2], z = q[3];
+    return {cv::Matx33d(1 - 2*(y*y + z*z), 2*(x*y - z*w), 2*(x*z + y*w), 2*(x*y + z*w), 1 - 2*(x*x + z*z), 2*(y*z - x*w), 2*(x*z - y*w),
+                        2*(y*z + x*w), 1 - 2*(x*x + y*y)), pose.t};
 }
 
 ColmapPose colmapPoseOf(const RigidTransform& transform)
 {
-    const cv::Vec3d rvec = rotationVector(transform.R);
-    const double angle = cv::norm(rvec), scale = angle > 0 ? std::sin(angle/2)/angle : 0.5;
-    return {{std::cos(angle/2), scale*rvec[0], scale*rvec[1], scale*rvec[2]}, transform.T};
+    // By the largest of the four, of which none is lost then.
+    const cv::Matx33d& R = transform.R;
+    const double squares[] = {1 + R(0, 0) + R(1, 1) + R(2, 2), 1 + R(0, 0) - R(1, 1) - R(2, 2), 1 - R(0, 0) + R(1, 1) - R(2, 2),
+                              1 - R(0, 0) - R(1, 1) + R(2, 2)};
+    const cv::Matx44d products(squares[0], R(2, 1) - R(1, 2), R(0, 2) - R(2, 0), R(1, 0) - R(0, 1),
+                               R(2, 1) - R(1, 2), squares[1], R(0, 1) + R(1, 0), R(0, 2) + R(2, 0),
+                               R(0, 2) - R(2, 0), R(0, 1) + R(1, 0), squares[2], R(1, 2) + R(2, 1),
+                               R(1, 0) - R(0, 1), R(0, 2) + R(2, 0), R(1, 2) + R(2, 1), squares[3]);
+    const int largest = (int)(std::max_element(squares, squares + 4) - squares);
+    const cv::Matx14d row = products.row(largest);
+    const cv::Vec4d q(row(0), row(1), row(2), row(3));
+    return {q*((q[0] < 0 ? -1. : 1.)/cv::norm(q)), transform.T};
 }
 
 bool matchesPattern(const std::string& name, const std::string& pattern)

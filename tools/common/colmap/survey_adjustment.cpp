@@ -49,11 +49,24 @@ void adjust(const Survey& survey, const BundleStart& bundle, const SurveyStart& 
     const int flags = bundle.flags | (robust ? GLASS_ROBUST : 0) | (known.empty() ? 0 : GLASS_USE_POSES);
     const TermCriteria criteria(TermCriteria::COUNT + TermCriteria::EPS, 1000, 1e-12);
     Mat errors;
-    adjusted([&] {
+    const auto run = [&] {
         fit.rms = refractiveBundleAdjust(survey.observations, survey.pixels, fit.rig.cameras, fit.rig.windows, Rs, Ts, rvecs, tvecs, points,
                                          start.lengths.rows(), fit.stdDeviations, fit.covariance, result.viewCovariances, deviations,
-                                         errors, result.used, flags, known, criteria, noArray(), noArray(),
-                                         bundle.covariance, start.lengths.commonStd());
+                                         errors, result.used, flags, known, criteria, noArray(), noArray(), bundle.covariance,
+                                         start.lengths.commonStd());
+    };
+    adjusted([&] {
+        try
+        {
+            run();
+        }
+        catch (const CalibrationError& e)
+        {
+            if (e.view < 0)
+                throw;
+            throw Failure("view '" + survey.views[e.view] + "' is to blame: " + (e.reason.empty() ? e.err : e.reason)
+                          + "; leave it out of the model, or its wrong points");
+        }
     });
     for (size_t c = 1; c < Rs.size(); c++)
         fit.rig.extrinsics[c] = {Rs[c], Ts[c]};
@@ -152,7 +165,7 @@ void setAngles(const Survey& survey, SurveyAdjustment& result)
     }
 }
 
-//! Two views and their distance: the covariances between them are not known, and are left out where the frame is one of the two.
+//! Of distances from the first view, which is the frame or has a position: what both have in common is not known, and counts as if not.
 void setScaleStd(SurveyAdjustment& result)
 {
     size_t frame = 0;
@@ -162,7 +175,8 @@ void setScaleStd(SurveyAdjustment& result)
     for (size_t view = frame + 1; view < result.rvecs.size(); view++)
     {
         const Vec3d base = result.centreOf((int)view) - result.centreOf((int)frame);
-        const double length = norm(base), variance = base.dot(result.centreCovariance((int)view)*base)/(length*length);
+        const Matx33d covariance = result.centreCovariance((int)view) + result.centreCovariance((int)frame);
+        const double length = norm(base), variance = base.dot(covariance*base)/(length*length);
         if (length > 0 && std::isfinite(variance))
             result.scaleStd = std::min(result.scaleStd, std::sqrt(variance)/length);
     }

@@ -3,6 +3,7 @@
 
 #include "console/failure.hpp"
 #include "formats/bytes.hpp"
+#include "formats/colmap_model.hpp"
 #include "formats/foreign_file.hpp"
 #include "formats/lens_maker.hpp"
 
@@ -84,22 +85,8 @@ bool isColmapBinary(const ForeignFile& file)
 ForeignRig readColmapBinary(const ForeignFile& file)
 {
     ForeignRig rig;
-    ByteReader in(file.bytes);
-    const uint64_t cameras = in.number<uint64_t>();
-    for (uint64_t c = 0; c < cameras; c++)
-    {
-        in.skip(sizeof(int32_t));
-        size_t parameters = 0;
-        const int id = in.number<int32_t>();
-        const std::string model = colmapModelName(id, parameters);
-        if (model.empty())
-            throw Failure("its camera model " + std::to_string(id) + " is none of COLMAP's that are known here");
-        const double width = (double)in.number<uint64_t>(), height = (double)in.number<uint64_t>();
-        std::vector<double> p;
-        for (size_t i = 0; i < parameters; i++)
-            p.push_back(in.number<double>());
-        rig.add(makeColmapCamera(model, p, imageSizeOf(width, height)));
-    }
+    for (const ColmapCamera& camera : readColmapCameras(file.bytes))
+        rig.add(makeColmapCamera(camera.model, camera.parameters, imageSizeOf((double)camera.width, (double)camera.height)));
     return rig;
 }
 

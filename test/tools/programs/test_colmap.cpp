@@ -1,0 +1,392 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+// refract_bundle --colmap and refract_undistort --colmap as a user runs them, on a survey behind a flat port in water of which the truth is
+// known.
+#include "run_tool.hpp"
+#include "scenes.hpp"
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+#include <opencv2/calib3d.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <cmath>
+#include <map>
+
+using namespace cv;
+using namespace cv::refract;
+
+namespace {
+
+const Size SIZE(640, 480);
+const Vec3d FAR(5000, 70000, -300);             // survey coordinates of positions.csv
+const double SIGMA = 0.3, POSITION_STD = 5, BASE = 90;
+
+struct Image
+{
+    std::string name;
+    int camera;
+    Matx33d R;                                  // scene -> camera
+    Vec3d t;
+    std::vector<std::pair<Point2d, int>> pixels;
+};
+
+Matx33d matrixOf(const Vec3d& rvec)
+{
+    Matx33d R;
+    Rodrigues(rvec, R);
+    return R;
+}
+
+std::string numbers(const std::vector<double>& list)
+{
+    std::string text;
+    for (double x : list)
+        text += format(" %.17g", x);
+    return text;
+}
+
+//! One camera, or two beside each other, over a relief; and what COLMAP makes of it: bent, smaller, turned.
+struct Network
+{
+    explicit Network(unsigned salt, int cameras = 1, double wrong = 0.) : random(salt)
+    {
+        const Matx33d K(800, 0, 319.5, 0, 800, 239.5, 0, 0, 1);
+        for (int c = 0; c < cameras; c++)
+        {
+            GlassWindow thought(Vec3d(0.03 - 0.05*c, -0.02, 1), 10, 1.49, 40, 1.333), real = thought;
+            real.normal = normalize(real.normal + Vec3d(random.normal(0.02), random.normal(0.02), 0));
+            real.distance += random.normal(1);
+            real.thickness[0] += random.normal(0.1);
+            real.index[0] += random.normal(0.001);
+            real.outerIndex += random.normal(0.001);
+            real.wedge = {Vec2d(random.normal(CV_PI/10800), random.normal(CV_PI/10800))};
+            truth.push_back(RefractiveCamera::create(K, noArray(), real));
+            start.push_back(RefractiveCamera::create(K, noArray(), thought));
+            truth.back()->setImageSize(SIZE);
+            start.back()->setImageSize(SIZE);
+            Rs.push_back(Mat(Matx33d(matrixOf(Vec3d(0.01, 0.04, -0.02)*c)), true));
+            Ts.push_back(Mat(Vec3d(-BASE*c, 2*c, 3*c), true));
+        }
+        for (int i = 0; i < 360; i++)
+            points.push_back({random.uniform(-560, 560), random.uniform(-400, 400), random.uniform(-40, 40)});
+        for (int view = 0; view < 18; view++)
+            look(view, wrong);
+    }
+
+    void look(int view, double wrong)
+    {
+        const int row = view/6;
+        const Vec3d centre(-375 + 150*(view % 6) + random.normal(15), -200 + 200*row + random.normal(15), -600 + random.normal(15));
+        const Matx33d R = matrixOf(Vec3d(random.normal(0.12), random.normal(0.12), random.normal(0.12)))
+            *matrixOf(Vec3d(0, 0, row == 1 ? 2 : 0));
+        centres.push_back(centre);
+        for (size_t c = 0; c < truth.size(); c++)
+        {
+            Image image = {format("%s/%03d.png", c ? "right" : "left", view), (int)c, Matx33d(Rs[c].ptr<double>())*R, {}, {}};
+            image.t = Matx33d(Rs[c].ptr<double>())*(-(R*centre)) + Vec3d(Ts[c].ptr<double>());
+            std::vector<Point2d> pixels;
+            Vec3d rvec;
+            Rodrigues(image.R, rvec);
+            refractiveProjectPoints(points, rvec, image.t, truth[c], pixels);
+            for (size_t i = 0; i < pixels.size(); i++)
+            {
+                const bool isWrong = random.uniform(0, 1) < wrong;
+                const double off = isWrong ? 15 : SIGMA;
+                const Point2d pixel = pixels[i] + Point2d(random.normal(off), random.normal(off));
+                if (pixel.x > 0 && pixel.y > 0 && pixel.x < SIZE.width - 1 && pixel.y < SIZE.height - 1)
+                {
+                    image.pixels.push_back({pixel, (int)i});
+                    good += !isWrong;
+                }
+            }
+            images.push_back(image);
+        }
+    }
+
+    //! Text; a point of id i + 1 where at least two images show it.
+    void write(const TemporaryFolder& f)
+    {
+        const double scale = 1/137.;
+        const Matx33d A = matrixOf(Vec3d(0.3, -0.5, 0.8));
+        writeRig(f / "calib.yml", start, Rs, Ts);
+        std::filesystem::create_directory(f.path()/"sparse");
+        std::vector<std::string> tracks(points.size());
+        std::vector<int> counts(points.size(), 0);
+        for (const Image& image : images)
+            for (const auto& pixel : image.pixels)
+                counts[pixel.second]++;
+        std::string text, cameras;
+        for (size_t c = 0; c < truth.size(); c++)
+            cameras += format("%d SIMPLE_RADIAL 640 480 1064 320 240 0.02\n", (int)c + 1);
+        for (size_t k = 0; k < images.size(); k++)
+        {
+            const Image& image = images[k];
+            const Vec3d centre = image.R.t()*(-image.t) + Vec3d(random.normal(4), random.normal(4), random.normal(4));
+            const Matx33d R = matrixOf(Vec3d(random.normal(0.01), random.normal(0.01), random.normal(0.01)))*image.R*A.t();
+            const Vec3d t = -(R*(A*centre*scale));
+            Vec3d rvec;
+            Rodrigues(R, rvec);
+            const double angle = norm(rvec), part = std::sin(angle/2)/angle;
+            text += format("%d", (int)k + 1) + numbers({std::cos(angle/2), part*rvec[0], part*rvec[1], part*rvec[2], t[0], t[1], t[2]})
+                + format(" %d ", image.camera + 1) + image.name + "\n";
+            for (size_t i = 0; i < image.pixels.size(); i++)
+            {
+                const Point2d p = image.pixels[i].first;
+                const int point = image.pixels[i].second;
+                text += format("%.6f %.6f %d ", p.x + 0.5, p.y + 0.5, counts[point] > 1 ? point + 1 : -1);
+                tracks[point] += format(" %d %d", (int)k + 1, (int)i);
+            }
+            text += "\n";
+        }
+        std::string ofPoints;
+        for (size_t i = 0; i < points.size(); i++)
+        {
+            const Point3d& X = points[i];
+            const Vec3d bent(X.x + random.normal(1), X.y + random.normal(1), X.z + 2e-5*(X.x*X.x + X.y*X.y) + random.normal(1));
+            const Vec3d there = A*bent*scale;
+            if (counts[i] > 1)
+                ofPoints += format("%d", (int)i + 1) + numbers({there[0], there[1], there[2]}) + " 9 9 9 0.5" + tracks[i] + "\n";
+        }
+        writeFile(f / "sparse/cameras.txt", cameras);
+        writeFile(f / "sparse/images.txt", text);
+        writeFile(f / "sparse/points3D.txt", ofPoints);
+        writeTables(f, counts);
+    }
+
+    void writeTables(const TemporaryFolder& f, const std::vector<int>& counts)
+    {
+        std::string lengths = "id1,id2,length,std\n", positions = "image,x,y,z,std\n";
+        std::vector<int> seen;
+        for (size_t i = 0; i < points.size(); i++)
+            if (counts[i] > 4)
+                seen.push_back((int)i);
+        for (size_t k = 0; k + 1 < seen.size() && k < 12; k += 2)
+            lengths += format("%d,%d,%.6f,0.5\n", seen[k] + 1, seen[k + 1] + 1, norm(points[seen[k]] - points[seen[k + 1]])
+                              + random.normal(0.5));
+        for (size_t view = 0; view < centres.size(); view++)
+        {
+            const Vec3d off(random.normal(POSITION_STD), random.normal(POSITION_STD), random.normal(POSITION_STD));
+            const Vec3d c = centres[view] + FAR + off;
+            positions += format("left/%03d.png,%.6f,%.6f,%.6f,%g\n", (int)view, c[0], c[1], c[2], POSITION_STD);
+        }
+        writeFile(f / "lengths.csv", lengths);
+        writeFile(f / "positions.csv", positions);
+    }
+
+    scenes::Random random;
+    std::vector<Ptr<RefractiveCamera>> truth, start;
+    std::vector<Mat> Rs, Ts;
+    std::vector<Point3d> points;
+    std::vector<Vec3d> centres;
+    std::vector<Image> images;
+    int good = 0;
+};
+
+ToolResult survey(const TemporaryFolder& f, const std::string& options, const std::string& model = "sparse")
+{
+    return runTool("refract_bundle " + f / "calib.yml" + " --colmap=" + f / model + " --out=" + f / "again.yml" + " --points-out="
+                   + f / "points.csv" + " --poses-out=" + f / "poses.csv" + " --summary=" + f / "summary.json" + " " + options);
+}
+
+//! By the first cell: all numbers after it.
+std::map<std::string, std::vector<double>> tableOf(const std::string& file)
+{
+    std::map<std::string, std::vector<double>> table;
+    std::istringstream in(readFile(file));
+    std::string line, cell, name;
+    std::getline(in, line);
+    while (std::getline(in, line))
+    {
+        std::istringstream cells(line);
+        std::getline(cells, name, ',');
+        while (std::getline(cells, cell, ','))
+            table[name].push_back(std::atof(cell.c_str()));
+    }
+    return table;
+}
+
+//! Errors over their stated standard deviations.
+struct Ratio
+{
+    void add(double error, double std)
+    {
+        squares += error*error/(std*std);
+        count++;
+    }
+    double value() const { return std::sqrt(squares/count); }
+    double squares = 0;
+    int count = 0;
+};
+
+void addErrors(const Network& network, const TemporaryFolder& f, Ratio& ofPoints, Ratio& ofPoses)
+{
+    for (const auto& row : tableOf(f / "points.csv"))
+    {
+        const std::vector<double>& n = row.second;
+        const Vec3d error = Vec3d(n[0], n[1], n[2]) - FAR - Vec3d(network.points[std::atoi(row.first.c_str()) - 1]);
+        for (int k = 0; k < 3 && n[8] == 0; k++)
+            ofPoints.add(error[k], n[3 + k]);
+    }
+    for (const auto& row : tableOf(f / "poses.csv"))
+    {
+        const size_t at = row.first.find('/');
+        const Vec3d truth = network.centres[std::atoi(row.first.substr(at == std::string::npos ? 0 : at + 1).c_str())];
+        for (int k = 0; k < 3; k++)
+            ofPoses.add(row.second[12 + k] - FAR[k] - truth[k], row.second[15 + k]);
+    }
+}
+
+} // namespace
+
+TEST_CASE("A bent model of COLMAP becomes points and poses within their +-", "[tools][bundle][colmap]")
+{
+    const int trials = scenes::trials(2);
+    Ratio ofPoints, ofPoses;
+    for (int trial = 0; trial < trials; trial++)
+    {
+        Network network(700 + trial);
+        const TemporaryFolder f;
+        network.write(f);
+        const ToolResult result = survey(f, "--positions=" + f / "positions.csv");
+        CAPTURE(scenes::seed(), trial, result.out, result.err);
+        REQUIRE(result.code == 0);
+        CHECK(mentions(result.out, " positions, +- "));
+        CHECK(std::count(result.out.begin(), result.out.end(), '\n') <= 10);
+        addErrors(network, f, ofPoints, ofPoses);
+    }
+    WARN("[numbers] refract_bundle --colmap, " << trials << " surveys, seed " << scenes::seed() << ": error over stated "
+         << ofPoints.value() << " of points, " << ofPoses.value() << " of places");
+    CHECK(ofPoints.value() > 0.8);
+    CHECK(ofPoints.value() < 1.25);
+    CHECK(ofPoses.value() > 0.8);
+    CHECK(ofPoses.value() < 1.25);
+}
+
+TEST_CASE("Lengths, a base line or the window tell the scale of a model", "[tools][bundle][colmap]")
+{
+    for (const std::string by : {"lengths", "base line", "window"})
+    {
+        Network network(720, by == "base line" ? 2 : 1);
+        const TemporaryFolder f;
+        network.write(f);
+        const ToolResult result = survey(f, by == "lengths" ? "--lengths=" + f / "lengths.csv" : by == "base line"
+                                         ? "--images='left/*' --images='right/*' --free=normal" : "");
+        CAPTURE(scenes::seed(), by, result.out, result.err);
+        REQUIRE(result.code == 0);
+        CHECK(mentions(result.out, by));
+        const double std = nlohmann::json::parse(readFile(f / "summary.json"))["scale_std"];
+        std::vector<Vec3d> found, truth;
+        for (const auto& row : tableOf(f / "points.csv"))
+            if (row.second[8] == 0)
+            {
+                found.push_back({row.second[0], row.second[1], row.second[2]});
+                truth.push_back(network.points[std::atoi(row.first.c_str()) - 1]);
+            }
+        std::vector<double> ratios;
+        for (size_t i = 0; i < found.size(); i++)
+            for (size_t k = i + 1; k < found.size(); k += 7)
+                ratios.push_back(norm(found[i] - found[k])/norm(truth[i] - truth[k]));
+        std::nth_element(ratios.begin(), ratios.begin() + ratios.size()/2, ratios.end());
+        const double off = ratios[ratios.size()/2] - 1;
+        CAPTURE(off, std);
+        CHECK(std::abs(off) < 4*std);
+        CHECK(std < (by == "window" ? 0.3 : 0.02));
+    }
+}
+
+TEST_CASE("Wrong observations of a model are left out, and few others", "[tools][bundle][colmap]")
+{
+    Network network(730, 1, 0.1);
+    const TemporaryFolder f;
+    network.write(f);
+    const ToolResult result = survey(f, "--positions=" + f / "positions.csv");
+    CAPTURE(scenes::seed(), result.out, result.err);
+    REQUIRE(result.code == 0);
+    Ratio ofPoints, ofPoses;
+    addErrors(network, f, ofPoints, ofPoses);
+    CHECK(ofPoses.value() < 2);
+    CHECK(ofPoses.count >= 3*17);     // one may show too few points
+    CHECK(ofPoints.value() < 2);
+}
+
+TEST_CASE("A refined model gives images of a pinhole without window", "[tools][undistort][colmap]")
+{
+    Network network(740);
+    const TemporaryFolder f;
+    network.write(f);
+    const ToolResult bundle = survey(f, "--positions=" + f / "positions.csv --colmap-out=" + f / "refracted");
+    CAPTURE(scenes::seed(), bundle.out, bundle.err);
+    REQUIRE(bundle.code == 0);
+    // Their grey value is the column.
+    Mat ramp(SIZE, CV_16U);
+    for (int x = 0; x < SIZE.width; x++)
+        ramp.col(x) = 1000 + 64*x;
+    std::filesystem::create_directories(f.path()/"images/left");
+    for (const Image& image : network.images)
+        imwrite(f / ("images/" + image.name), ramp);
+    const ToolResult result = runTool("refract_undistort " + f / "again.yml" + " --colmap=" + f / "refracted" + " --image-dir="
+                                      + f / "images" + " --out-dir=" + f / "dense");
+    CAPTURE(result.out, result.err);
+    REQUIRE(result.code == 0);
+    CHECK(mentions(result.out, " images written to "));
+    CHECK(std::filesystem::exists(f / "dense/sparse/points3D.bin"));
+    CHECK(mentions(readFile(f / "dense/stereo/patch-match.cfg"), "left/000.png\n__auto__, 20\n"));
+    // Its own reader takes the model, and a bundle of it without a window is as good.
+    const Ptr<RefractiveCamera> found = RefractiveCamera::read(f / "again.yml");
+    found->setWindow(GlassWindow());
+    const Mat image = imread(f / "dense/images/left/004.png", IMREAD_UNCHANGED);
+    REQUIRE(image.type() == CV_16U);
+    CHECK(image.size() == SIZE);
+    CHECK(std::abs(image.at<ushort>(240, 320) - (1000 + 64*320)) < 64*60);
+    const std::string camera = readFile(f / "dense/sparse/cameras.bin");
+    REQUIRE(camera.size() == 8 + 4 + 4 + 16 + 4*8);
+    double K[4];
+    std::memcpy(K, camera.data() + 32, sizeof K);
+    double worst = 0;
+    int count = 0;
+    const Image& shown = network.images[4];
+    std::vector<Point2d> raw;
+    Vec3d rvec;
+    Rodrigues(shown.R, rvec);
+    refractiveProjectPoints(network.points, rvec, shown.t, network.truth[0], raw);
+    for (const auto& pixel : shown.pixels)
+    {
+        const Vec3d X = shown.R*Vec3d(network.points[pixel.second]) + shown.t;
+        const Point2d p(K[0]*X[0]/X[2] + K[2] - 0.5, K[1]*X[1]/X[2] + K[3] - 0.5);
+        if (!(p.x > 2 && p.y > 2 && p.x < SIZE.width - 3 && p.y < SIZE.height - 3))
+            continue;
+        const double value = image.at<ushort>(cvRound(p.y), cvRound(p.x)), column = (value - 1000)/64;
+        const double slope = (image.at<ushort>(cvRound(p.y), cvRound(p.x) + 1) - value)/64;
+        worst = std::max(worst, std::abs(column + slope*(p.x - cvRound(p.x)) - raw[pixel.second].x));
+        count++;
+    }
+    CAPTURE(worst, count);
+    CHECK(count > 20);
+    CHECK(worst < 4);           // the window as found, the depth between points
+}
+
+TEST_CASE("What refract_bundle --colmap cannot do is said in a sentence", "[tools][bundle][colmap]")
+{
+    Network network(750);
+    const TemporaryFolder f;
+    network.write(f);
+    const auto refusal = [&](const std::string& options, const std::string& model = "sparse") {
+        const ToolResult result = survey(f, options, model);
+        CAPTURE(options, result.out, result.err);
+        CHECK(result.code == 1);
+        CHECK(std::count(result.err.begin(), result.err.end(), '\n') == 1);
+        return result.err;
+    };
+    CHECK(mentions(refusal("", "nothing"), "has no cameras.bin and no cameras.txt: give the folder of a COLMAP model"));
+    CHECK(mentions(refusal("--images='none/*'"), "no image of the model is of --images=none/*: its names are like 'left/000.png'"));
+    CHECK(mentions(refusal("--images='left/*' --images='right/*'"), "--images is given 2 times, and the calibration has 1 camera"));
+    writeFile(f / "l.csv", "id1,id2,length,std\n1,9999,20,0.1\n");
+    CHECK(mentions(refusal("--lengths=" + f / "l.csv"), "has no point '9999'"));
+    writeFile(f / "p.csv", "image,x,y,z,std\na.png,1,2,3,1\n");
+    CHECK(mentions(refusal("--positions=" + f / "p.csv"), "has positions of 0 of the model's images, at least three are needed"));
+    writeFile(f / "sparse/cameras.txt", "1 OPENCV 1280 960 1000 1000 640 480 0 0 0 0\n");
+    CHECK(mentions(refusal("--lengths=" + f / "lengths.csv"), "is of 1280x960 pixels, and camera 1 was calibrated with 640x480"));
+    const std::string images = readFile(f / "sparse/images.txt");
+    writeFile(f / "sparse/images.txt", images.substr(0, images.size()/2));
+    CHECK(mentions(refusal(""), "images.txt' looks like COLMAP's, but line "));
+}
