@@ -158,7 +158,7 @@ struct Network
         std::string lengths = "id1,id2,length,std\n", positions = "image,x,y,z,std\n";
         std::vector<int> seen;
         for (size_t i = 0; i < points.size(); i++)
-            if (counts[i] > 4)
+            if (counts[i] > 2)
                 seen.push_back((int)i);
         for (size_t k = 0; k + 1 < seen.size() && k < 12; k += 2)
             lengths += format("%d,%d,%.6f,0.5\n", seen[k] + 1, seen[k + 1] + 1, norm(points[seen[k]] - points[seen[k + 1]])
@@ -380,8 +380,8 @@ TEST_CASE("What refract_bundle --colmap cannot do is said in a sentence", "[tool
     CHECK(mentions(refusal("", "nothing"), "has no cameras.bin and no cameras.txt: give the folder of a COLMAP model"));
     CHECK(mentions(refusal("--images='none/*'"), "no image of the model is of --images=none/*: its names are like 'left/000.png'"));
     CHECK(mentions(refusal("--images='left/*' --images='right/*'"), "--images is given 2 times, and the calibration has 1 camera"));
-    writeFile(f / "l.csv", "id1,id2,length,std\n1,9999,20,0.1\n");
-    CHECK(mentions(refusal("--lengths=" + f / "l.csv"), "has no point '9999'"));
+    writeFile(f / "l.csv", "id1,id2,length,std\n9998,9999,20,0.1\n");
+    CHECK(mentions(refusal("--lengths=" + f / "l.csv"), "has no point '9998'"));
     writeFile(f / "p.csv", "image,x,y,z,std\na.png,1,2,3,1\n");
     CHECK(mentions(refusal("--positions=" + f / "p.csv"), "has positions of 0 of the model's images, at least three are needed"));
     writeFile(f / "sparse/cameras.txt", "1 OPENCV 1280 960 1000 1000 640 480 0 0 0 0\n");

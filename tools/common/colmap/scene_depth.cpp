@@ -18,14 +18,16 @@ const int CELL = 16;            // px
 Vec3d planeOf(const std::vector<Point2d>& pixels, const std::vector<double>& depths, Size size)
 {
     const int FEW = 8, count = (int)pixels.size();
-    Mat A = Mat::zeros(count, 3, CV_64F), b(count, 1, CV_64F), solution;
+    Mat A(count, 3, CV_64F), b(count, 1, CV_64F), solution;
     for (int i = 0; i < count; i++)
     {
         A.at<double>(i, 0) = 1.;
-        A.at<double>(i, 1) = count >= FEW ? 2.*pixels[i].x/size.width - 1. : 0.;
-        A.at<double>(i, 2) = count >= FEW ? 2.*pixels[i].y/size.height - 1. : 0.;
+        A.at<double>(i, 1) = 2.*pixels[i].x/size.width - 1.;
+        A.at<double>(i, 2) = 2.*pixels[i].y/size.height - 1.;
         b.at<double>(i) = 1./depths[i];
     }
+    if (count < FEW)
+        return {mean(b)[0], 0., 0.};
     solve(A, b, solution, DECOMP_SVD);
     return Vec3d(solution.ptr<double>());
 }
