@@ -67,8 +67,8 @@ struct Network
             Rs.push_back(Mat(Matx33d(matrixOf(Vec3d(0.01, 0.04, -0.02)*c)), true));
             Ts.push_back(Mat(Vec3d(-BASE*c, 2*c, 3*c), true));
         }
-        for (int i = 0; i < 360; i++)
-            points.push_back({random.uniform(-560, 560), random.uniform(-400, 400), random.uniform(-40, 40)});
+        for (int i = 0; i < 420; i++)
+            points.push_back({random.uniform(-460, 460), random.uniform(-330, 330), random.uniform(-40, 40)});
         for (int view = 0; view < 18; view++)
             look(view, wrong);
     }
