@@ -165,9 +165,12 @@ def bent_floor():
     by_pinholes, _, rest = sag(pinholes)
     by_us, radius, our_rest = sag(ours)
     border = np.hypot(*(ours - np.median(ours, 0))[:, :2].T) > 0.8*radius
-    print(f"\nfloor of {2*radius:.0f} mm, {len(images)} images, {len(pinholes)} points (mm): sag, and what points are off beside it, RMS")
-    print(f"  pinholes in water   {by_pinholes:8.2f}   {rest:.2f}")
-    print(f"  refract_bundle      {by_us:8.2f} +- {np.median(sz[border]):.2f} (of a point at the border)   {our_rest:.2f}")
+    print(f"\nfloor of {2*radius:.0f} mm at {FLOOR:.0f} mm, {len(images)} images, {len(pinholes)} points (mm)\n"
+          "                        sag   beside it, RMS   off the true floor, RMS")
+    for name, points, value, left in (("pinholes in water", pinholes, by_pinholes, rest), ("refract_bundle", ours, by_us, our_rest)):
+        print(f"  {name:18s}{value:9.3f}{left:17.2f}{np.sqrt(np.mean((points[:, 2] - FLOOR)**2)):26.2f}")
+    print(f"refract_bundle states +- {np.median(sz[border]):.2f} of a point at the border; all points' error over stated, RMS: "
+          f"{np.sqrt(np.mean(((ours[:, 2] - FLOOR)/sz)**2)):.2f}")
     run("refract_undistort", "again.yml", "--colmap=refracted", "--image-dir=images", "--out-dir=dense")
 
 
