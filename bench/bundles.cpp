@@ -3,6 +3,7 @@
 
 // Bundle adjustments as large as real ones: eight cameras round a tank, from a crude start.
 #include "bundles.hpp"
+#include "measure.hpp"
 
 #include <opencv2/calib3d.hpp>
 #include <opencv2/refract.hpp>
@@ -27,14 +28,6 @@ struct Tank
     std::vector<std::vector<Mat> > images;
     std::vector<Vec4d> lengths;
 };
-
-//! Of all threads: what else runs on the machine does not count.
-double processorSeconds()
-{
-    rusage usage;
-    getrusage(RUSAGE_SELF, &usage);
-    return (double)usage.ru_utime.tv_sec + 1e-6*(double)usage.ru_utime.tv_usec;
-}
 
 Vec3d randomVector(std::mt19937_64& engine, double size)
 {

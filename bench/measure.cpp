@@ -47,6 +47,8 @@ static double now(clockid_t clock)
     return t.tv_sec + 1e-9*t.tv_nsec;
 }
 
+double processorSeconds() { return now(CLOCK_PROCESS_CPUTIME_ID); }
+
 //! Seconds of one run, from as many as fill the time.
 static double seconds(const Work& work, clockid_t clock, double least = 2e-3)
 {

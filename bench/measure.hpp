@@ -40,6 +40,9 @@ Times measure(const Row& row, int rounds);
 //! Processor time of one run after the first, median of rounds.
 double medianSeconds(const Work& work, int rounds);
 
+//! Of all threads of this process so far: what else runs on the machine does not count.
+double processorSeconds();
+
 //! Keeps the process on the given number of processors.
 void pin(int processors);
 

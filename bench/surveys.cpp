@@ -4,6 +4,7 @@
 // A camera behind a flat port moves along a strip of the sea floor, as photogrammetry has it: 200 new points an image, each seen by
 // seven or eight. Lens and window are known to what a calibration says.
 #include "surveys.hpp"
+#include "measure.hpp"
 
 #include <opencv2/calib3d.hpp>
 #include <opencv2/refract.hpp>
@@ -24,13 +25,6 @@ const int PER_VIEW = 200;               // new points
 const double SIGMA = 0.3;               // px
 const double BAR = 500, BAR_SIGMA = 0.1;        // lengths, one at each twentieth view
 const Size IMAGE(1280, 1024);
-
-double processorSeconds()
-{
-    rusage usage;
-    getrusage(RUSAGE_SELF, &usage);
-    return (double)usage.ru_utime.tv_sec + 1e-6*(double)usage.ru_utime.tv_usec;
-}
 
 //! What a calibration knows of a parameter.
 double priorSigma(const String& name)
