@@ -4,6 +4,7 @@
 // The search for the best of several minima: successive halving, and from the best to its neighbours.
 #include "rig_scenes.hpp"
 #include "start/multi_start.hpp"
+#include "start/refit.hpp"
 #include "start/shared_window.hpp"
 #include "window/place.hpp"
 
@@ -108,4 +109,34 @@ TEST_CASE("Stages of a search see more and more of the views", "[search]")
     CHECK(picked.count() == 2);
     CHECK(picked.object[0] == search.views.object[4]);
     CHECK(picked.cameras[0].refracted[1] == search.views.cameras[0].refracted[1]);
+}
+
+TEST_CASE("A fit from an earlier one looks for no other minimum, unless it has to", "[search]")
+{
+    Random random(3701);
+    CAPTURE(seed());
+    RigTruth truth = makeRig(1, { 0 }, 1);
+    truth.cameras[0]->setWindow(makeWindow(PANE_IN_AIR, random));
+    const RigScene scene = makeRigScene(truth, 1, random, SIGMA);
+    RigCall call(truth, scene, false);
+    const double rms = call.run(0);
+    REQUIRE(std::isfinite(call.otherMinima.at<double>(3)));
+    const GlassWindow best = call.cameras[0]->window();
+    GlassWindow other = best;
+    other.normal = Vec3d(call.otherMinima.ptr<double>());
+
+    const auto fitFrom = [&](const GlassWindow& window)
+    {
+        call.cameras[0]->setWindow(window);
+        return call.run(FROM_EARLIER_FIT);
+    };
+    CHECK(fitFrom(best) == Approx(rms).epsilon(1e-9));
+    CHECK(norm(call.cameras[0]->window().normal - best.normal) < 1e-6);
+    CHECK(std::isnan(call.otherMinima.at<double>(3)));
+    CHECK(fitFrom(other) > 1.0001*rms);
+    CHECK(norm(call.cameras[0]->window().normal - other.normal) < 1e-4);
+    GlassWindow nowhere = best;
+    nowhere.normal = normalize(Vec3d(1, 0, 0.02));      // which the board is not behind
+    CHECK(fitFrom(nowhere) == Approx(rms).epsilon(1e-9));
+    CHECK(std::isfinite(call.otherMinima.at<double>(3)));
 }

@@ -6,6 +6,7 @@
 #include "calibrate/image_fit.hpp"
 #include "calibrate/pinhole_rig.hpp"
 #include "console/failure.hpp"
+#include "start/refit.hpp"
 #include <opencv2/calib3d.hpp>
 #include <algorithm>
 #include <cmath>
@@ -49,7 +50,7 @@ Fit trainWindow(const RigData& data, const Fit& fit, int flags, const std::vecto
 {
     try
     {
-        return fitImages(data, fit.rig, train, flags);
+        return fitImages(data, fit.rig, train, flags | FROM_EARLIER_FIT);
     }
     catch (const cv::Exception&)
     {

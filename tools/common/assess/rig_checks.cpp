@@ -6,6 +6,7 @@
 #include "calibrate/pinhole_rig.hpp"
 #include "calibrate/window_face.hpp"
 #include "console/progress.hpp"
+#include "start/refit.hpp"
 #include <algorithm>
 #include <cmath>
 
@@ -107,7 +108,7 @@ std::vector<Influence> leaveOneOut(const RigData& data, const Fit& fit, int flag
         others.erase(std::find(others.begin(), others.end(), influence.view));
         try
         {
-            const Fit without = fitImages(data, fit.rig, others, flags);
+            const Fit without = fitImages(data, fit.rig, others, flags | FROM_EARLIER_FIT);
             for (int c = 0; c < data.cameraCount; c++)
                 influence.change[c] = placeChange(fit.rig.cameras[c]->window(), without.rig.cameras[c]->window());
         }

@@ -27,6 +27,7 @@ double calibrateGlass(InputArrayOfArrays objectPoints, InputArrayOfArrays imageP
     task.flags = flags;
     task.criteria = criteria;
     task.wantsJacobian = jacobian.needed();
+    task.wantsCovariance = stdDeviations.needed() || covariance.needed();
     const RigFit fit = fitCheckingPairs(rig, task);
     cameraOf(camera) = rig.cameras[0];
     writeFit(fit, rvecs, tvecs, stdDeviations, covariance, perViewErrors);

@@ -7,6 +7,7 @@
 #include "calibrate/calibrate_rig.hpp"
 #include "calibrate/calibration_error.hpp"
 #include "start/pose_start.hpp"
+#include "start/refit.hpp"
 #include "start/rig_task.hpp"
 #include "math/covariance_matrix.hpp"
 #include "math/rotation.hpp"
@@ -421,10 +422,11 @@ static RigFit calibrate(InputArrayOfArrays objectPoints, const std::vector<std::
                         InputArrayOfArrays tvecs, int flags, InputArrayOfArrays poseCovariances, TermCriteria criteria,
                         InputArrayOfArrays cameraCovariances, InputArray targetCovariance,
                         const std::vector<std::vector<Mat> >& pixelCovariancesDirect,
-                        const std::vector<std::vector<Mat> >& pixelCovariancesRefracted)
+                        const std::vector<std::vector<Mat> >& pixelCovariancesRefracted, bool wantsCovariance)
 {
     const int count = (int)cameras.size();
     RigTask task;
+    task.wantsCovariance = wantsCovariance;
     task.views = readRigViews(objectPoints, imagePointsDirect, imagePointsRefracted, count, HalfPixels::TAKEN);
     addPixelCovariances(pixelCovariancesDirect, pixelCovariancesRefracted, task.views);
     checkCount(imagePointsRefracted.size(), count, "imagePointsRefracted", false);
@@ -453,7 +455,8 @@ static RigFit calibrate(InputArrayOfArrays objectPoints, const std::vector<std::
     }
     task.cameraPriors = readCameraPriors(cameraCovariances, rig.cameras);
     task.targetCovariance = readTargetCovariance(targetCovariance);
-    task.flags = flags;
+    task.flags = flags & ~FROM_EARLIER_FIT;
+    task.isRefit = (flags & FROM_EARLIER_FIT) != 0;
     task.criteria = criteria;
     const bool placesFollow = task.isIncremental(rig) && Rs.needed() && Ts.needed() && Rs.empty() && Ts.empty();
     rig.extrinsics = placesFollow ? std::vector<Pose>(count) : readExtrinsicPoses(Rs, Ts, count);
@@ -495,10 +498,10 @@ double calibrateGlassRig(InputArrayOfArrays objectPoints,
 {
     CV_INSTRUMENT_REGION();
 
-    checkFlags(flags, MONO_FLAGS | GLASS_FREE_EXTRINSICS | GLASS_USE_POSES | GLASS_FIX_NORMAL);
+    checkFlags(flags, MONO_FLAGS | GLASS_FREE_EXTRINSICS | GLASS_USE_POSES | GLASS_FIX_NORMAL | FROM_EARLIER_FIT);
     const RigFit fit = calibrate(objectPoints, imagePointsDirect, imagePointsRefracted, cameras, windowOfCamera, Rs, Ts,
                                  rvecs, tvecs, flags, poseCovariances, criteria, cameraCovariances, targetCovariance,
-                                 pixelCovariancesDirect, pixelCovariancesRefracted);
+                                 pixelCovariancesDirect, pixelCovariancesRefracted, stdDeviations.needed() || covariance.needed());
     writeFit(fit, rvecs, tvecs, stdDeviations, covariance, perViewErrors);
     writeMat(fit.imageStatus, imageStatus);
     writeMasks(fit.inliers, inliers);
@@ -517,7 +520,7 @@ double calibrateGlassRig(InputArrayOfArrays objectPoints, const std::vector<std:
 
     checkFlags(flags, MONO_FLAGS | GLASS_FREE_EXTRINSICS | GLASS_FIX_NORMAL);
     const RigFit fit = calibrate(objectPoints, imagePointsDirect, imagePointsRefracted, cameras, windowOfCamera, Rs, Ts,
-                                 noArray(), noArray(), flags, noArray(), criteria, noArray(), noArray(), {}, {});
+                                 noArray(), noArray(), flags, noArray(), criteria, noArray(), noArray(), {}, {}, false);
     writeFit(fit, rvecs, tvecs, noArray(), noArray(), noArray());
     return fit.rms;
 }
@@ -547,6 +550,7 @@ double stereoCalibrateGlass(InputArrayOfArrays objectPoints,
     checkWindows(rig, task.views, flags, { "imagePointsRefracted1", "imagePointsRefracted2" });
     task.flags = flags;
     task.criteria = criteria;
+    task.wantsCovariance = stdDeviations.needed() || covariance.needed();
 
     const RigFit fit = fitCheckingPairs(rig, task);
     setCameras(rig, { camera1, camera2 });

@@ -146,9 +146,10 @@ double residualApart(const std::vector<Pair>& pairs, const RigViews& views, cons
 }
 
 //! Of a fit that explains most pairs; infinite if there is none.
-double plausibleRms(Rig rig, const RigTask& task)
+double plausibleRms(Rig rig, RigTask task)
 {
     const double infinity = std::numeric_limits<double>::infinity();
+    task.wantsCovariance = false;
     RigFit fit;
     if (!fitRig(rig, task, fit).converged())
         return infinity;
@@ -242,6 +243,7 @@ void explainRefusal(const Rig& start, RigTask task)
     const double swapped = swappedRms(start, task);
     if (std::isfinite(swapped))
         throwSwapped(swapped, "not at all");
+    task.wantsCovariance = false;
     task.flags &= ~(GLASS_FREE_THICKNESS | GLASS_FREE_INDEX | GLASS_FREE_DISTANCE | GLASS_FREE_OUTER_INDEX);
     Rig fitted = start;
     RigFit fit;

@@ -150,15 +150,25 @@ int seenCount(const RigViews& views)
     return count;
 }
 
+//! Where the rig is given; false if a view has no pose there, or a point no image.
+bool startAsGiven(const Rig& rig, const RigViews& views, const RigTask& task, RigStart& start)
+{
+    start = { rig, posesWithoutWindow(rig, views, task.knownPoses) };
+    return placeTargets(start.rig, views, task.flags, start.poses) && (task.isRobust() || checkPoses(views, start.poses).converged());
+}
+
 } // namespace
 
 FitOutcome findStart(const Rig& rig, RigTask& task, RigStart& start, std::vector<OtherMinimum>& minima)
 {
     const RigViews views = task.isRobust() ? inlierViews(rig, task.views) : task.views;
     const int flags = task.searchFlags(rig);
-    const bool searchesLens = (flags & GLASS_FREE_INTRINSICS) != 0, isIncremental = task.isIncremental(rig);
+    const bool isAsGiven = task.isRefit && startAsGiven(rig, views, task, start);
+    const bool searchesLens = (flags & GLASS_FREE_INTRINSICS) && !isAsGiven, isIncremental = task.isIncremental(rig) && !isAsGiven;
     FitOutcome outcome;
-    if (isIncremental)
+    if (isAsGiven)
+        minima.assign(rig.count(), OtherMinimum());
+    else if (isIncremental)
     {
         minima.assign(rig.count(), OtherMinimum());
         start = incrementalStart(rig, views, flags, minima);
@@ -243,7 +253,7 @@ static FitOutcome fitSeen(Rig& rig, const RigTask& given, RigFit& fit)
     const FitOutcome determined = covariance.compute(problem, variance, requiredOf(task));
     if (!determined.converged() || !outcome.converged())
         return determined.converged() ? outcome : determined;
-    if (criteria.type & TermCriteria::EPS)      // else it is not where the squares are least
+    if (task.wantsCovariance && (criteria.type & TermCriteria::EPS))        // else it is not where the squares are least
         covariance.widen(problem);
     eigen2cv(covariance.ofParameters, fit.covariance);
     fit.targetErrors = targetErrorsOf(problem);
@@ -309,7 +319,15 @@ static void spread(const std::vector<int>& seen, int count, RigFit& fit)
 FitOutcome fitRig(Rig& rig, const RigTask& task, RigFit& fit)
 {
     std::vector<int> seen;
-    FitOutcome outcome = fitSeen(rig, onlySeen(task, seen), fit);
+    RigTask some = onlySeen(task, seen);
+    const Rig given = rig;
+    FitOutcome outcome = fitSeen(rig, some, fit);
+    if (some.isRefit && !outcome.converged())
+    {
+        some.isRefit = false;
+        rig = given;
+        outcome = fitSeen(rig, some, fit);
+    }
     if (outcome.view >= 0)
         outcome.view = seen[outcome.view];
     if (outcome.converged() && (int)seen.size() < task.views.count())

@@ -16,6 +16,7 @@ namespace cv { namespace refract {
 namespace {
 
 const Stage ANY_PLAUSIBLE = { ALL_VIEWS, COARSE, SIZE_MAX, SAME_ANGLE, PLAUSIBLE }, LAST = { ALL_VIEWS, FINE };
+const Stage FIRST_OF_PAIR = { 10, COARSE, 1 };      // where the second is; the fit of all follows
 const size_t MAX_SOURCES = 3;       // of so many cameras behind a window theirs is tried for all
 
 //! What a camera tells alone.
@@ -121,19 +122,38 @@ void addAssembled(const Rig& given, const std::vector<CameraHypothesis>& cameras
         starts.push_back(start);
 }
 
+//! Views that both cameras saw well enough.
+std::vector<int> commonViews(const RigViews& views)
+{
+    std::vector<int> common;
+    for (int view = 0; view < views.count(); view++)
+        if (!views.cameras[0].refracted[view].empty() && !views.cameras[1].refracted[view].empty())
+            common.push_back(view);
+    return common;
+}
+
 //! The second of two cameras, fitted behind the window of the first.
 CameraHypothesis fitPairBehindWindow(const Rig& given, const std::vector<CameraHypothesis>& cameras, int first, int second,
                                      const RigViews& all, int flags)
 {
     const Rig pair = { { given.cameras[first], given.cameras[second] }, { 0, 0 }, { Pose(), given.extrinsics[second] } };
-    const std::vector<CameraHypothesis> both = { cameras[first], cameras[second] };
     const RigViews views = viewsOf(all, { first, second });
+    const std::vector<int> common = commonViews(views);
+    if (common.empty())
+        return cameras[second];
+    const RigViews both = pick(views, common);
+    std::vector<CameraHypothesis> alone = { { cameras[first].camera, {} }, { cameras[second].camera, {} } };
+    for (int view : common)
+    {
+        alone[0].poses.push_back(cameras[first].poses[view]);
+        alone[1].poses.push_back(cameras[second].poses[view]);
+    }
     flags |= refracts(given.cameras[first]) ? GLASS_FREE_DISTANCE : 0;
     std::vector<RigStart> starts;
     for (int from : { 0, 1 })
-        addAssembled(pair, both, { from, from }, views, flags, starts);
-    const std::vector<Minimum> minima = multiStart(starts, { ANY_PLAUSIBLE }, views, flags);
-    return minima.empty() ? cameras[second] : camerasOf(minima[0], both)[1];
+        addAssembled(pair, alone, { from, from }, both, flags, starts);
+    const std::vector<Minimum> minima = multiStart(starts, { FIRST_OF_PAIR }, both, flags);
+    return minima.empty() ? cameras[second] : placedCamera(camerasOf(minima[0], alone)[1].camera, viewsOf(all, { second }), 0);
 }
 
 //! Cameras behind the window of one of them.

@@ -5,6 +5,8 @@
 /* The search for the minimum of a calibration that has several. */
 
 #include "start/multi_start.hpp"
+#include "adjust/inner.hpp"
+#include "adjust/linearize.hpp"
 #include "adjust/minimize.hpp"
 #include "window/place.hpp"
 
@@ -22,6 +24,19 @@ RigViews someViews(const RigViews& views, int atMost)
     return pick(views, some);
 }
 
+/** To the least squares. Where only poses are free, each is there by itself.
+@param cost there; infinite: some point has no image */
+bool fit(Problem& problem, const TermCriteria& criteria, double& cost)
+{
+    cost = std::numeric_limits<double>::infinity();
+    if (FreeSpace(problem).count == 0)
+        return optimizeInner(problem, cost);
+    const FitOutcome outcome = minimize(problem, criteria);
+    if (outcome.isUsable())
+        cost = problem.squaredError();
+    return outcome.converged();
+}
+
 Minimum fitFrom(const RigStart& start, const RigViews& views, const TermCriteria& criteria, int flags)
 {
     Minimum minimum;
@@ -36,15 +51,15 @@ Minimum fitFrom(const RigStart& start, const RigViews& views, const TermCriteria
     if (!checkPoses(views, minimum.poses).converged())
         return minimum;
     Problem problem(minimum.rig, views, minimum.poses, std::vector<PosePrior>(), std::vector<CameraPrior>(), flags);
-    const FitOutcome outcome = minimize(problem, criteria);
-    const double cost = outcome.isUsable() ? problem.squaredError() : minimum.cost;
+    double cost;
+    const bool converged = fit(problem, criteria, cost);
     if (!std::isfinite(cost))       // it is sorted by
         return minimum;
     minimum.rig = problem.rig();
     minimum.poses = problem.poses();
     minimum.cost = cost;
     minimum.freedom = problem.freedom();
-    minimum.converged = outcome.converged();
+    minimum.converged = converged;
     return minimum;
 }
 

@@ -20,6 +20,8 @@ struct RigTask
     int flags;
     TermCriteria criteria;
     bool wantsJacobian = false;
+    bool wantsCovariance = true;                //!< as it holds; else only whether it exists, and as derivatives have it
+    bool isRefit = false;                       //!< FROM_EARLIER_FIT (refit.hpp)
 
     bool isRobust() const { return (flags & GLASS_ROBUST) != 0; }
     //! Neither direct images nor poses.

@@ -83,7 +83,9 @@ std::vector<Minimum> windowMinima(const Camera& camera, const RigViews& views, i
         for (const Rig& rig : atOtherDistances(given.rig, views))
             for (const RigStart& start : likelyTilts({ rig, {} }, views))
                 starts.push_back(start);
-        stages.insert(stages.begin(), FIRST_OF_MANY);
+        Stage first = FIRST_OF_MANY;
+        first.views = FEW_VIEWS;        // of which the poses are known
+        stages.insert(stages.begin(), first);
     }
     flags &= GLASS_FREE_DISTANCE;
     const std::vector<Minimum> minima = multiStart(starts, stages, views, flags);
