@@ -218,7 +218,7 @@ void Covariance::setParameters()
 void Covariance::widen(Problem& problem)
 {
     MatrixXd half = outer_.half();
-    if (!widenByDistanceProfiles(problem, information_, variance_, half))
+    if (!widenByProfiles(problem, information_, variance_, half))
         return;
     outer_.setHalf(half);
     setParameters();

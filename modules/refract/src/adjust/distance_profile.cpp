@@ -2,7 +2,8 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-/* The likelihood's profile of a window's distance: the least squares at each distance, all else being fitted.
+/* The likelihood's profile of a window's distance, or of a coordinate of a dome's centre: the least squares at each, all else being
+fitted. What follows is said of a distance; of a sealed rig the centre of a dome is known as badly, and the lens follows it.
 
 With derivatives that stayed the same, it would be a parabola: three standard deviations from the best distance the sum of squares
 would be larger by 3^2 variances. Of a window far before a long lens it is flat and bent, and the other parameters follow on a
@@ -28,7 +29,8 @@ using Eigen::VectorXd;
 
 const double SIGMAS = 3;                // where the profile's width is read
 const double TO_AN_END = 2;             // standard deviations, if the profile is flat to there
-const double WEAK = 0.02;               // part of the way from the window to the targets: what is known better has a parabola
+const double WEAK = 0.02;               // part of the way from the window to the targets, or of a radius: what is known better has a
+                                        // parabola
 const double WIDER = 1.05;              // what is wider by less is as stated
 
 //! From a window at this distance to the targets, roughly; of a scene, which may be anywhere, the distance itself.
@@ -108,18 +110,19 @@ VectorXd freeChange(const Problem& problem, const FreeSpace& space, const Vector
     return free;
 }
 
-//! One window's distance, which is fixed while this lives.
-class DistanceProfile
+//! One window's distance, or a coordinate of its centre, which is fixed while this lives.
+class PlaceProfile
 {
 public:
     /** @param step the change of all values for one standard deviation of the distance */
-    DistanceProfile(Problem& problem, int block, int coordinate, const VectorXd& step, double variance);
-    ~DistanceProfile();
+    PlaceProfile(Problem& problem, int block, int coordinate, const VectorXd& step, double variance);
+    ~PlaceProfile();
     //! The change of all values, for one standard deviation to one side as the profile has them.
     VectorXd towards(int side) const;
 
 private:
     double excess(double sigmas, const VectorXd& start, VectorXd& change) const;
+    VectorXd widest(const VectorXd& ofAll, const VectorXd& shares) const;
     Problem& problem_;
     const std::vector<ParameterBlock> before_;      //!< what is free and held
     const int block_, coordinate_;
@@ -128,7 +131,7 @@ private:
     const double variance_, least_;
 };
 
-DistanceProfile::DistanceProfile(Problem& problem, int block, int coordinate, const VectorXd& step, double variance)
+PlaceProfile::PlaceProfile(Problem& problem, int block, int coordinate, const VectorXd& step, double variance)
     : problem_(problem), before_(problem.blocks()), block_(block), coordinate_(coordinate), index_(coordinate), best_(valuesOf(problem)),
       step_(step), variance_(variance), least_(problem.squaredError())
 {
@@ -137,7 +140,7 @@ DistanceProfile::DistanceProfile(Problem& problem, int block, int coordinate, co
     problem.blocks()[block].isFree[coordinate] = false;
 }
 
-DistanceProfile::~DistanceProfile()
+PlaceProfile::~PlaceProfile()
 {
     for (size_t b = 0; b < before_.size(); b++)
     {
@@ -150,7 +153,7 @@ DistanceProfile::~DistanceProfile()
 /** By how many variances the least squares at another distance are larger than at the best; infinite where some point has no image.
 @param start in the direction of this change of all values
 @param change out */
-double DistanceProfile::excess(double sigmas, const VectorXd& start, VectorXd& change) const
+double PlaceProfile::excess(double sigmas, const VectorXd& start, VectorXd& change) const
 {
     const TermCriteria criteria(TermCriteria::COUNT + TermCriteria::EPS, 100, 1e-7);
     setValues(problem_, best_ + start*(sigmas*step_[index_]/start[index_]));
@@ -169,13 +172,22 @@ double DistanceProfile::excess(double sigmas, const VectorXd& start, VectorXd& c
     return (problem_.squaredError() - least_)/variance_;
 }
 
-VectorXd DistanceProfile::towards(int side) const
+/** What other values change by for one standard deviation, where they are far off before the end of the way: it is bent.
+@param shares changes on the way, by their standard deviations */
+VectorXd PlaceProfile::widest(const VectorXd& ofAll, const VectorXd& shares) const
+{
+    VectorXd change = (shares.array().abs() > ofAll.array().abs()).select(shares, ofAll);
+    change[index_] = ofAll[index_];
+    return change;
+}
+
+VectorXd PlaceProfile::towards(int side) const
 {
     const int STEPS = 12;
     const double SHORT = 0.05;          // part of the way
     const double lower = problem_.blocks()[block_].lower[coordinate_];
     const double end = side < 0 ? (best_[index_] - lower)/step_[index_] : std::numeric_limits<double>::infinity();
-    VectorXd last = VectorXd::Zero(step_.size()), direction = step_;
+    VectorXd last = VectorXd::Zero(step_.size()), shares = last, direction = step_;
     double inside = 0, root = 0, step = SIGMAS;         // standard deviations by the derivatives, and by the profile
     bool hasFailed = false;
     for (int i = 0; i < STEPS && step > SHORT*inside && inside < end; i++)
@@ -191,36 +203,67 @@ VectorXd DistanceProfile::towards(int side) const
         }
         const double there = std::sqrt(std::max(squares, 0.));
         if (there >= SIGMAS)
-            return change*((inside + (sigmas - inside)*(SIGMAS - root)/(there - root))/sigmas/SIGMAS);
+            return widest(change*((inside + (sigmas - inside)*(SIGMAS - root)/(there - root))/sigmas/SIGMAS), shares);
         last = direction = change;
+        shares = widest(shares, change/std::max(there, 1.));
         inside = sigmas;
         root = there;
         if (!hasFailed)
             step = inside;
     }
-    return last/std::max(root, TO_AN_END);
+    return widest(last/std::max(root, TO_AN_END), shares);
 }
 
 } // namespace
 
-bool widenByDistanceProfiles(Problem& problem, const Information& information, double variance, Eigen::MatrixXd& half)
+namespace {
+
+//! A coordinate that tells where a window is.
+struct PlaceCoordinate
 {
-    const FreeSpace space(problem);
-    bool isWider = false;
+    int block, coordinate;
+    double size;                    //!< of which a standard deviation may be a part
+    int together, before;           //!< with the others of a centre, which is hardly known as a whole; so many of them come before it
+};
+
+//! Those that are free, a distance of a pane and the centre of a dome.
+std::vector<PlaceCoordinate> placeCoordinates(const Problem& problem)
+{
+    std::vector<PlaceCoordinate> all;
     for (int b = 0; b < problem.outerCount(); b++)
     {
         const ParameterBlock& block = problem.blocks()[b];
-        const int i = block.at.distance - block.at.media;
-        if (block.kind != ParameterBlock::MEDIA || hasCenter(block.at.shape) || !block.isFree[i])
+        const int distance = block.at.distance - block.at.media;
+        if (block.kind == ParameterBlock::MEDIA && !hasCenter(block.at.shape) && block.isFree[distance])
+            all.push_back({ b, distance, gapBehind(problem, block.values[distance]), 1, 0 });
+        if (block.kind != ParameterBlock::PLACE || block.at.shape != WINDOW_DOME)
             continue;
-        const int column = space.first[b] + (int)std::count(block.isFree.begin(), block.isFree.begin() + i, true);
+        for (int i : { 2, 0, 1 })
+            if (block.isFree[0])        // as a whole
+                all.push_back({ b, i, problem.camera(block.index).window().radius, 3, i });
+    }
+    return all;
+}
+
+} // namespace
+
+bool widenByProfiles(Problem& problem, const Information& information, double variance, Eigen::MatrixXd& half)
+{
+    const FreeSpace space(problem);
+    bool isWider = false;
+    for (const PlaceCoordinate& place : placeCoordinates(problem))
+    {
+        const std::vector<bool>& isFree = problem.blocks()[place.block].isFree;
+        const int column = space.first[place.block] + (int)std::count(isFree.begin(), isFree.begin() + place.coordinate, true);
         const Eigen::RowVectorXd h = half.row(column).normalized();
         const VectorXd linear = std::sqrt(variance)*timesVector(half, h.transpose());
-        if (!(linear[column] > WEAK*gapBehind(problem, block.values[i])))
+        const double sigma = std::sqrt(variance)*half.middleRows(column - place.before, place.together).norm();
+        if (!(sigma > WEAK*place.size))
             continue;
         VectorXd change;
         {
-            const DistanceProfile profile(problem, b, i, changeOfValues(problem, space, information, linear), variance);
+            const PlaceProfile profile(problem, place.block, place.coordinate, changeOfValues(problem, space, information, linear),
+                                          variance);
             for (int side : { -1, 1 })
             {
                 const VectorXd way = side*freeChange(problem, space, profile.towards(side));

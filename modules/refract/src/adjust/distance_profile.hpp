@@ -9,13 +9,14 @@
 
 namespace cv { namespace refract {
 
-/** Widens a covariance where the likelihood's profile of a free distance is wider than its derivatives at the least squares say.
+/** Widens a covariance where the likelihood's profile of a free distance, or of the centre of a dome, is wider than its derivatives at
+the least squares say.
 @param problem at its least squares; stays there
 @param information of all that is free
 @param variance of a pixel coordinate
 @param half H, H H^T = covariance of the outer parameters for unit pixel noise
 @return whether it was widened */
-bool widenByDistanceProfiles(Problem& problem, const Information& information, double variance, Eigen::MatrixXd& half);
+bool widenByProfiles(Problem& problem, const Information& information, double variance, Eigen::MatrixXd& half);
 
 }} // namespace
 

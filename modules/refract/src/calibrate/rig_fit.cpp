@@ -11,6 +11,7 @@
 #include "start/sealed_start.hpp"
 #include "start/window_start.hpp"
 #include "window/parameters.hpp"
+#include "window/place.hpp"
 #include <opencv2/core/eigen.hpp>
 
 namespace cv { namespace refract {
@@ -133,6 +134,25 @@ int requiredOf(const RigTask& task)
     return task.isSealed() ? task.flags & REQUIRE_ALL : REQUIRE_ALL;
 }
 
+/** Of a fit that goes on to where a camera touches its dome: what images do not tell, by name; converged: there is no such. */
+FitOutcome centersAtDomes(const Problem& problem)
+{
+    const double TOUCHES = 0.02;        // part of the radius
+    FitOutcome outcome(FitOutcome::UNDETERMINED);
+    outcome.dimension = 1;
+    for (const ParameterBlock& block : problem.blocks())
+    {
+        if (block.kind != ParameterBlock::PLACE || block.at.shape != WINDOW_DOME || !block.isFree[0])
+            continue;
+        const GlassWindow window = problem.camera(block.index).window();
+        if (!(distanceToSurface(window) < TOUCHES*window.radius))
+            continue;
+        const String name = block.names[0].substr(0, block.names[0].find('['));
+        outcome.parameters.push_back({ problem.cameraCount() > 1 ? name + format(" of camera %d", block.index + 1) : name, NaN, NaN });
+    }
+    return outcome.parameters.empty() ? FitOutcome() : outcome;
+}
+
 Mat targetErrorsOf(const Problem& problem)
 {
     Mat values(SharedTargetErrors::COUNT, 1, CV_64F, Scalar(NaN));
@@ -251,8 +271,13 @@ static FitOutcome fitSeen(Rig& rig, const RigTask& given, RigFit& fit)
     const double variance = outcome.varianceFactor*problem.squaredError()/problem.freedom();
     Covariance covariance;
     const FitOutcome determined = covariance.compute(problem, variance, requiredOf(task));
-    if (!determined.converged() || !outcome.converged())
-        return determined.converged() ? outcome : determined;
+    if (determined.converged() && !outcome.converged())
+    {
+        const FitOutcome atDomes = centersAtDomes(problem);
+        return atDomes.converged() ? outcome : atDomes;
+    }
+    if (!determined.converged())
+        return determined;
     if (task.wantsCovariance && (criteria.type & TermCriteria::EPS))        // else it is not where the squares are least
         covariance.widen(problem);
     eigen2cv(covariance.ofParameters, fit.covariance);
