@@ -200,6 +200,8 @@ TEST_CASE("What is wrong with a list is said", "[bundle][sparse]")
     CHECK_THAT(fault([](ListCall& l) { l.observations[7][1] = 2; }), Contains("observations[7] is of camera 2, but cameras has 2"));
     CHECK_THAT(fault([](ListCall& l) { l.observations[7][2] = -1; }), Contains("observations[7] is of point -1, but points3D has 20"));
     CHECK_THAT(fault([](ListCall& l) { l.call.points.clear(); l.observations[3][2] = -1; }), Contains("point -1; it must be a whole"));
+    CHECK_THAT(fault([](ListCall& l) { l.call.points.clear(); l.observations[3][2] = 2000000000; }),
+               Contains("observations[3] is of point 2000000000, but 160 observations are of 160 at most") && Contains("points3D"));
     CHECK_THAT(fault([](ListCall& l) { l.pixels.pop_back(); }), Contains("imagePoints has 159 pixels, but observations has 160 rows"));
     CHECK_THAT(fault([](ListCall& l) { l.observations.clear(); }), Contains("observations is empty"));
     CHECK_THAT(fault([](ListCall& l) { l.call.cameras.clear(); }), Contains("cameras is empty"));

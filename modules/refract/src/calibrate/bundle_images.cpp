@@ -70,10 +70,16 @@ struct Listed
 };
 
 //! A whole number from 0 on, below a limit if there is one.
-int checkedIndex(double value, int i, const char* what, int limit, const char* source)
+/** @param limit that the source says; 0: it says nothing
+@param observations that there are: so many points, or views, may have one each */
+int checkedIndex(double value, int i, const char* what, int limit, const char* source, int observations)
 {
-    if (value >= 0 && value == std::floor(value) && value < (limit > 0 ? limit : INT_MAX))
+    const bool isIndex = value >= 0 && value == std::floor(value);
+    if (isIndex && value < (limit > 0 ? limit : observations))
         return (int)value;
+    if (isIndex && limit == 0)
+        CV_Error_(Error::StsOutOfRange, ("observations[%d] is of %s %.0f, but %d observations are of %d at most; count from 0 without "
+                                         "gaps, or give %s of as many as there are", i, what, value, observations, observations, source));
     if (limit > 0)
         CV_Error_(Error::StsOutOfRange, ("observations[%d] is of %s %g, but %s has %d, counted from 0", i, what, value, source, limit));
     CV_Error_(Error::StsOutOfRange, ("observations[%d] is of %s %g; it must be a whole number, counted from 0", i, what, value));
@@ -92,8 +98,9 @@ std::vector<Listed> readList(InputArray observations, int cameras, int views, in
     given.clone().reshape(1, isVector ? (int)given.total() : given.rows).convertTo(rows, CV_64F);
     std::vector<Listed> all;
     for (int i = 0; i < rows.rows; i++)
-        all.push_back({ checkedIndex(rows(i, 0), i, "view", views, "rvecs"), checkedIndex(rows(i, 1), i, "camera", cameras, "cameras"),
-                        checkedIndex(rows(i, 2), i, "point", points, "points3D") });
+        all.push_back({ checkedIndex(rows(i, 0), i, "view", views, "rvecs", rows.rows),
+                        checkedIndex(rows(i, 1), i, "camera", cameras, "cameras", rows.rows),
+                        checkedIndex(rows(i, 2), i, "point", points, "points3D", rows.rows) });
     return all;
 }
 
