@@ -278,21 +278,21 @@ void printHead(const char* last)
 
 } // namespace
 
-void printSurveys(int most)
+void printSurveys(int least, int most)
 {
     std::printf("a strip through a flat port in water, lens and window within their priors; poses, points, camera: error/sigma\n");
     printHead("    views^x");
     double seconds = 0;
     int before = 0;
     for (int views : { 20, 60, 100, 300, 1000, 3000, 6000 })
-        if (views <= most)
+        if (views >= least && views <= most)
         {
             seconds = run(views, 0, seconds, before);
             before = views;
         }
     printHead("    wrong, %  good lost wrong kept");
     for (int views : { 20, 100, 300 })
-        if (views <= most)
+        if (views >= least && views <= most)
             run(views, 0.1, 0, 0);
 }
 

@@ -8,8 +8,8 @@ namespace bench {
 
 /** Table of strips of images of a sea floor through a flat port, adjusted from lists of observations: time, memory, how the time grows
 with the views, errors of poses and points against the truth in their stated standard deviations.
-@param most views of the longest strip */
-void printSurveys(int most);
+@param least views of the shortest strip, @param most of the longest */
+void printSurveys(int least, int most);
 
 } // namespace bench
 
