@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // Bundles of a list of observations, and the sparse system behind them.
-#include "adjust/block_cholesky.hpp"
+#include "adjust/damped_steps.hpp"
 #include "adjust/linearize.hpp"
 #include "adjust/ray_midpoints.hpp"
 #include "bundle_scenes.hpp"
@@ -292,6 +292,63 @@ TEST_CASE("Poses and points of a strip are as uncertain as the whole inverse say
             CHECK(ofPoints((int)point, k) == Approx(std::sqrt(whole(firstOfPoint[point] + k, firstOfPoint[point] + k))).epsilon(1e-5));
 }
 
+namespace {
+
+//! What the fit of a strip takes from a start that is off.
+struct Effort
+{
+    int steps, blocks;              //!< of the factor
+    double gain;                    //!< that another step would have, of the squares
+};
+
+Effort effortOf(int views)
+{
+    Random random(48);
+    const RigTruth truth = makeRig(1, { 0 }, 1.333);
+    const BundleScene scene = makeStrip(truth, views, random, 0.1);
+    const std::unique_ptr<Problem> problem = bundleAt(truth, scene, 0.1, 0);
+    for (int view = 1; view < views; view++)
+    {
+        Pose pose = problem->pose(view);
+        pose.rvec += random.vector(0.005);
+        pose.tvec += random.vector(3);
+        problem->setPose(view, pose);
+    }
+    problem->setPoints(startPoints(*problem, std::vector<Point3d>(scene.points.size(), Point3d(NaN, NaN, NaN))), {});
+    ReducedCost cost(*problem);
+    std::vector<Eigen::VectorXd> values;
+    for (int block : cost.variableBlocks())
+        values.push_back(problem->blocks()[block].values);
+    std::vector<double*> state;
+    for (Eigen::VectorXd& block : values)
+        state.push_back(block.data());
+    cost.setState(state);
+    DampedSteps steps = { (double)problem->equationCount(), 1e-12, 1e-4, 30, false };
+    steps.run(cost);
+    REQUIRE(steps.isConverged);
+    REQUIRE(cost.linearize());
+    Effort effort = { steps.iterations, 0, 0 };
+    const BlockCholesky& factor = cost.information().poses.factor;
+    for (int place = 0; place < factor.count(); place++)
+        effort.blocks += 1 + (int)factor.column(place).rows.size();
+    dampedStep(cost.information(), 0, effort.gain);
+    effort.gain /= cost.squaredError();
+    return effort;
+}
+
+} // namespace
+
+TEST_CASE("A strip of four times as many views takes as many steps, and four times the blocks", "[bundle][sparse]")
+{
+    CAPTURE(seed());
+    const Effort one = effortOf(24), four = effortOf(96);
+    CAPTURE(one.steps, four.steps, one.blocks, four.blocks);
+    CHECK(four.steps <= one.steps + 3);
+    CHECK(four.steps < 15);
+    CHECK(four.blocks <= 5*one.blocks);
+    CHECK(four.gain < 1e-9);
+}
+
 TEST_CASE("A strip's results do not depend on the number of threads", "[bundle][sparse]")
 {
     Random random(46);
@@ -312,71 +369,4 @@ TEST_CASE("A strip's results do not depend on the number of threads", "[bundle][
     CHECK(largestDifference(calls[0].call.pointDeviations, calls[1].call.pointDeviations) == 0);
     CHECK(largestDifference(Mat(calls[0].call.points), Mat(calls[1].call.points)) == 0);
     CHECK(largestDifference(calls[0].viewCovariances.back(), calls[1].viewCovariances.back()) == 0);
-}
-
-TEST_CASE("A sparse matrix of blocks has the factor and the inverse of the dense one", "[sparse]")
-{
-    CAPTURE(seed());
-    const int SIZE = BlockCholesky::SIZE, count = 40;
-    Random random(47);
-    BlockGraph graph(count);
-    MatrixXd dense = MatrixXd::Zero(SIZE*count, SIZE*count);
-    for (int a = 0; a < count; a++)
-        for (int b : { a + 1, a + 3, (7*a + 5) % count })
-        {
-            if (b >= count || b == a)
-                continue;
-            if (std::find(graph[a].begin(), graph[a].end(), b) == graph[a].end())
-            {
-                graph[a].push_back(b);
-                graph[b].push_back(a);
-            }
-            MatrixXd rows = MatrixXd::Zero(SIZE, SIZE*count);
-            for (int r = 0; r < SIZE; r++)
-                for (int c = 0; c < SIZE; c++)
-                {
-                    rows(r, SIZE*a + c) = random.normal(1);
-                    rows(r, SIZE*b + c) = random.normal(1);
-                }
-            dense += rows.transpose()*rows;
-        }
-    const auto fill = [&](BlockCholesky& sparse)
-    {
-        for (int k = 0; k < count; k++)
-        {
-            BlockCholesky::Column& column = sparse.column(k);
-            const int block = SIZE*sparse.blockAt(k);
-            column.diagonal = dense.block(block, block, SIZE, SIZE);
-            for (size_t i = 0; i < column.rows.size(); i++)
-                column.blocks[i] = dense.block(SIZE*sparse.blockAt(column.rows[i]), block, SIZE, SIZE);
-        }
-        sparse.factor(sparse.diagonal().cwiseSqrt(), 1e-12);
-    };
-    BlockCholesky sparse(graph);
-    fill(sparse);
-    CHECK(sparse.lost() < 0);
-    const MatrixXd whole = inverse(dense);
-    MatrixXd X = MatrixXd::Identity(SIZE*count, SIZE*count);
-    sparse.solveL(X);
-    CHECK((X.transpose()*X - whole).norm() < 1e-9*whole.norm());
-    sparse.solveTranspose(X);
-    CHECK((X - whole).norm() < 1e-9*whole.norm());
-    const BlockInverse inverted(sparse);
-    for (int a = 0; a < count; a++)
-    {
-        CHECK((inverted(a, a) - whole.block(SIZE*a, SIZE*a, SIZE, SIZE)).norm() < 1e-9*whole.norm());
-        for (int b : graph[a])
-            CHECK((inverted(a, b) - whole.block(SIZE*a, SIZE*b, SIZE, SIZE)).norm() < 1e-9*whole.norm());
-    }
-    // A block whose last coordinate nothing tells.
-    dense.row(SIZE*9 + 5).setZero();
-    dense.col(SIZE*9 + 5).setZero();
-    BlockCholesky singular(graph);
-    fill(singular);
-    CHECK(singular.lost() == 9);
-    MatrixXd b = dense*MatrixXd::Ones(SIZE*count, 1);
-    singular.solveL(b);
-    singular.solveTranspose(b);
-    CHECK(b(SIZE*9 + 5) == 0);
-    CHECK(std::abs(b(SIZE*20) - 1) < 1e-8);
 }

@@ -41,7 +41,7 @@ def rotation(rvec):
 def camera_text(window, indent=""):
     n = NORMAL/np.linalg.norm(NORMAL)
     glass = (f"{{ normal: [ {n[0]:.17g}, {n[1]:.17g}, {n[2]:.17g} ], distance: {window['distance']}, "
-             f"thickness: [ {window['thickness']} ], index: [ {window['index']} ], inner_index: 1., outer_index: {window['outer_index']} }}")
+             f"thickness: [ {window['thickness']} ], index: [ {window['index']} ], inner_index: 1, outer_index: {window['outer_index']} }}")
     matrix = f"[ {FOCAL}, 0., {(WIDTH - 1)/2}, 0., {FOCAL}, {(HEIGHT - 1)/2}, 0., 0., 1. ]"
     lines = [f"image_width: {WIDTH}", f"image_height: {HEIGHT}",
              f"camera_matrix: !!opencv-matrix {{ rows: 3, cols: 3, dt: d, data: {matrix} }}",

@@ -172,7 +172,7 @@ enum GlassCalibrationFlags {
     GLASS_FIX_TANGENT_DIST = 131072,    //!< p1 and p2 stay
     GLASS_FIX_S1_S2_S3_S4 = 262144,     //!< the thin prism's coefficients stay
     GLASS_FIX_TAUX_TAUY = 524288,       //!< the sensor's tilt stays
-    GLASS_FIX_NORMAL = 1048576,         //!< windows stay (calibrateGlassRig, refractiveBundleAdjust) unless cameraCovariances free them
+    GLASS_FIX_NORMAL = 1048576,         //!< windows stay (of a rig, of a bundle) unless cameraCovariances free them
     GLASS_REQUIRE_WINDOW = 2097152,     //!< refuse a sealed rig if a free parameter of a window is not determined by itself
     GLASS_REQUIRE_INTRINSICS = 4194304, //!< the same of a lens; of a focal length by boards without a window, to 10 %
     GLASS_REQUIRE_EXTRINSICS = 8388608, //!< the same of R and T

@@ -5,9 +5,10 @@
 #ifndef OPENCV_REFRACT_ELIMINATE_HPP
 #define OPENCV_REFRACT_ELIMINATE_HPP
 
-#include "adjust/block_cholesky.hpp"
 #include "adjust/linearize.hpp"
+#include "adjust/normal_equations.hpp"
 #include "math/dense.hpp"
+#include <memory>
 
 namespace cv { namespace refract {
 
@@ -21,18 +22,6 @@ struct InnerBlock
     bool isDetermined = true;
 };
 
-/** What is eliminated of a scene's views, once its points are: their poses. Those that are adjusted are its blocks, in the order of the
-views; the free space has their columns after those of the cameras. With the factor L of their information, the root of all is
-
-    [ L^T  W ]
-    [ 0    R ],     R: Information::root */
-struct ScenePoses
-{
-    BlockCholesky factor;
-    Eigen::MatrixXd byCameras;      //!< W
-    Eigen::VectorXd residual;       //!< above that of the cameras
-};
-
 //! What all images tell of the cameras' parameters when all others are unknown.
 struct Information
 {
@@ -43,6 +32,7 @@ struct Information
     double rounding = 0;            //!< what is left of a scaled column below this is rounding
     std::vector<InnerBlock> inner;  //!< of views, or of clusters
     ScenePoses poses;
+    std::shared_ptr<const NormalEquations> equations;   //!< of a scene, its points eliminated
 };
 
 //! A view without its pose.
@@ -68,6 +58,10 @@ Information eliminatePoses(const Problem& problem, const FreeSpace& space, const
 Information eliminatePoints(const Problem& problem, const FreeSpace& space, const std::vector<ImageRows>& images);
 //! The one of both that the problem asks for.
 Information informationOf(const Problem& problem, bool withHeld = true);
+
+/** A step of a scene's outer parameters to the least squares, each damped by this part of what all images tell of it.
+@param gain by which the squares of the linearised problem are less there */
+Eigen::VectorXd dampedStep(const Information& information, double damping, double& gain);
 
 //! Of half the squared error, by the cameras' free coordinates.
 Eigen::VectorXd gradientOfCameras(const Information& information);

@@ -26,46 +26,6 @@ using Eigen::VectorXd;
 const double ROUNDING = 1e-12;
 const int SIZE = BlockCholesky::SIZE;
 
-//! Normal equations of cameras and poses. Of matrices with a diagonal the lower half counts.
-struct NormalEquations
-{
-    NormalEquations(int cameras, const BlockGraph& graph)
-        : ofCameras(MatrixXd::Zero(cameras, cameras)), ofPoses(graph), ofBoth(MatrixXd::Zero(SIZE*ofPoses.count(), cameras)),
-          gradient(VectorXd::Zero(cameras + SIZE*ofPoses.count())) {}
-    MatrixXd ofCameras;
-    BlockCholesky ofPoses;
-    MatrixXd ofBoth;            //!< by the poses, by the cameras
-    VectorXd gradient;
-
-    //! @param columns of cameras, and of one pose
-    void add(const MatrixXd& products, const VectorXd& ownGradient, const std::vector<int>& columns)
-    {
-        for (size_t c = 0; c < columns.size(); c++)
-        {
-            gradient[columns[c]] += ownGradient[c];
-            for (size_t r = c; r < columns.size(); r++)
-                at(std::max(columns[r], columns[c]), std::min(columns[r], columns[c])) += products(r, c);
-        }
-    }
-    VectorXd effect() const
-    {
-        VectorXd squares(gradient.size());
-        squares << ofCameras.diagonal(), ofPoses.diagonal();
-        return squares.cwiseSqrt();
-    }
-
-private:
-    double& at(int row, int column)
-    {
-        const int cameras = (int)ofCameras.cols(), pose = row - cameras;
-        if (pose < 0)
-            return ofCameras(row, column);
-        if (column < cameras)
-            return ofBoth(pose, column);
-        return ofPoses.column(ofPoses.at(pose/SIZE)).diagonal(pose % SIZE, (column - cameras) % SIZE);
-    }
-};
-
 //! Views are neighbours where they show points of one cluster, whatever the weights: which ones are outliers changes.
 BlockGraph graphOf(const Problem& problem, const FreeSpace& space)
 {
@@ -153,9 +113,36 @@ struct EliminatedCluster
     VectorXd residual;          //!< Y E^T r
 };
 
+/** Y of one point, by Cholesky.
+@return false if there is none to speak of */
+bool inverseRoot3(const Eigen::Matrix3d& A, Eigen::Matrix3d& Y)
+{
+    const double WELL_CONDITIONED = 1e-6;
+    const Eigen::Vector3d scale = A.diagonal().cwiseMax(DBL_MIN).cwiseSqrt().cwiseInverse();
+    Eigen::Matrix3d L = scale.asDiagonal()*A*scale.asDiagonal();
+    Y.setIdentity();
+    for (int k = 0; k < 3; k++)
+    {
+        const double left = L(k, k) - L.row(k).head(k).squaredNorm();
+        if (!(left > WELL_CONDITIONED))
+            return false;
+        L(k, k) = std::sqrt(left);
+        for (int i = k + 1; i < 3; i++)
+            L(i, k) = (L(i, k) - L.row(i).head(k).dot(L.row(k).head(k)))/L(k, k);
+        for (int c = 0; c <= k; c++)
+            Y(k, c) = (Y(k, c) - L.row(k).head(k).dot(Y.col(c).head(k)))/L(k, k);
+    }
+    Y *= scale.asDiagonal();
+    return true;
+}
+
 //! Y, Y^T Y = A^+. @param isRegular whether A has an inverse
 MatrixXd inverseRoot(const MatrixXd& A, bool& isRegular)
 {
+    Eigen::Matrix3d Y;
+    isRegular = A.cols() == 3 && inverseRoot3(A, Y);
+    if (isRegular)
+        return Y;
     const VectorXd scale = A.diagonal().cwiseMax(DBL_MIN).cwiseSqrt().cwiseInverse();
     const SymmetricEigen eigen(scale.asDiagonal()*A*scale.asDiagonal());
     const VectorXd& values = eigen.values;
@@ -167,13 +154,18 @@ MatrixXd inverseRoot(const MatrixXd& A, bool& isRegular)
 std::vector<int> columnsOf(const Problem& problem, int cluster, const std::vector<ImageRows>& images)
 {
     std::vector<int> columns;
-    std::vector<int> last;      // views come one after the other: most images of a view depend on the same
+    int last = -1;
     for (const Observation& o : problem.observationsOf(cluster))
     {
-        if (problem.images()[o.image].rootWeights[o.row] == 0 || images[o.image].columns == last)
+        if (problem.images()[o.image].rootWeights[o.row] == 0 || o.image == last)
             continue;
-        last = images[o.image].columns;
-        columns.insert(columns.end(), last.begin(), last.end());
+        last = o.image;
+        const std::vector<int>& own = images[last].columns;
+        const size_t before = columns.size();
+        // Cameras' columns come first, and most images depend on the same of these.
+        for (size_t k = 0; k < own.size(); k++)
+            if (before <= k || columns[k] != own[k])
+                columns.push_back(own[k]);
     }
     std::sort(columns.begin(), columns.end());
     columns.erase(std::unique(columns.begin(), columns.end()), columns.end());
@@ -209,10 +201,10 @@ EliminatedCluster eliminate(const Problem& problem, int index, const std::vector
     }
     cluster.addLengths(problem.pixelSigma(), EE, Er);
     const MatrixXd Y = inverseRoot(EE, result.points.isDetermined);
-    result.W = timesTranspose(FE, Y);
+    result.W = FE.lazyProduct(Y.transpose());
     result.residual = timesVector(Y, Er);
     result.points.half = Y.transpose();
-    result.points.byOuter = -product(result.W, Y).transpose();
+    result.points.byOuter = -result.W.lazyProduct(Y).transpose();
     result.points.step = -transposeTimesVector(Y, result.residual);
     return result;
 }
@@ -275,6 +267,7 @@ void subtractPose(int view, const std::vector<PoseColumns>& seen, std::vector<in
     BlockCholesky::Column& column = poses.column(poses.at(view));
     for (size_t i = 0; i < column.rows.size(); i++)
         entry[column.rows[i]] = (int)i;
+    Eigen::Matrix<double, SIZE, Eigen::Dynamic> ofBoth = Eigen::Matrix<double, SIZE, Eigen::Dynamic>::Zero(SIZE, cameras);
     for (const PoseColumns& own : seen)
     {
         const std::vector<int>& columns = own.cluster->points.columns;
@@ -285,8 +278,7 @@ void subtractPose(int view, const std::vector<PoseColumns>& seen, std::vector<in
             column.diagonal.noalias() -= ofView.lazyProduct(ofView.transpose());
             size_t k = 0;
             for (; k < columns.size() && columns[k] < cameras; k++)
-                equations.ofBoth.col(columns[k]).segment<SIZE>(SIZE*view).noalias() -=
-                    ofView.lazyProduct(W.block<1, 3>(k, point).transpose());
+                ofBoth.col(columns[k]).noalias() += ofView.lazyProduct(W.block<1, 3>(k, point).transpose());
             for (; k < columns.size(); k += SIZE)
             {
                 const int other = poses.at((columns[k] - cameras)/SIZE);
@@ -295,6 +287,7 @@ void subtractPose(int view, const std::vector<PoseColumns>& seen, std::vector<in
             }
         }
     }
+    equations.ofBoth.middleRows<SIZE>(SIZE*view) -= ofBoth;
 }
 
 //! From all but the cameras' own. Each pose by itself, the clusters in their order, so that threads make no difference.
@@ -320,41 +313,17 @@ void subtractPoses(const std::vector<EliminatedCluster>& clusters, NormalEquatio
     });
 }
 
-/** Poses are eliminated as points were; then R and z, R^T R = what is left for the cameras and R^T z = its gradient.
-@param information with the effects to which columns are scaled */
-void setRoot(NormalEquations& equations, Information& information)
-{
-    const int cameras = (int)equations.ofCameras.cols(), ofPoses = SIZE*equations.ofPoses.count();
-    ScenePoses& poses = information.poses;
-    equations.ofPoses.factor(information.effect.tail(ofPoses), ROUNDING);
-    MatrixXd both(ofPoses, cameras + 1);
-    both << equations.ofBoth, equations.gradient.tail(ofPoses);
-    equations.ofPoses.solveL(both);
-    poses.byCameras = both.leftCols(cameras);
-    poses.residual = both.col(cameras);
-    poses.factor = std::move(equations.ofPoses);
-    information.ofInner += poses.residual.squaredNorm();
-    information.root.resize(cameras, cameras);
-    information.residual.resize(cameras);
-    if (cameras == 0)
-        return;
-    VectorXd gradient = equations.gradient.head(cameras);
-    if (ofPoses > 0)                // Eigen has no products of nothing
-    {
-        gradient -= transposeTimesVector(poses.byCameras, poses.residual);
-        addGram(poses.byCameras, -1, equations.ofCameras);
-    }
-    const VectorXd effect = information.effect.head(cameras);
-    const VectorXd scale = (effect.array() > 0).select(effect.cwiseInverse(), 0.);
-    const LDLT ldlt(scale.asDiagonal()*equations.ofCameras*scale.asDiagonal());
-    const VectorXd D = ldlt.D();
-    const VectorXd roots = (D.array() > ROUNDING).select(D.cwiseMax(0).cwiseSqrt(), 0.);
-    information.root = roots.asDiagonal()*ldlt.L().transpose()*effect.asDiagonal();
-    const VectorXd z = ldlt.solveL(scale.cwiseProduct(gradient));
-    information.residual = (roots.array() > 0).select(z.cwiseQuotient(roots), 0.);
-}
-
 } // namespace
+
+VectorXd dampedStep(const Information& information, double damping, double& gain)
+{
+    NormalEquations equations = *information.equations;
+    const VectorXd gradient = equations.gradient, added = damping*equations.diagonal();
+    equations.addToDiagonal(added);
+    const VectorXd step = RootOfEquations(std::move(equations), information.effect, ROUNDING).step(information.effect, ROUNDING);
+    gain = step.cwiseProduct(added).dot(step) - gradient.dot(step);
+    return step;
+}
 
 Information eliminatePoints(const Problem& problem, const FreeSpace& space, const std::vector<ImageRows>& images)
 {
@@ -362,7 +331,7 @@ Information eliminatePoints(const Problem& problem, const FreeSpace& space, cons
     addImages(images, equations);
     addPriors(problem, space, equations);
     Information information;
-    information.effect = equations.effect();
+    information.effect = equations.diagonal().cwiseSqrt();
     information.rounding = std::sqrt(ROUNDING);
     const int count = (int)problem.scene().clusters().size();
     information.inner.resize(count);
@@ -386,7 +355,12 @@ Information eliminatePoints(const Problem& problem, const FreeSpace& space, cons
         }
     }
     products.flush();
-    setRoot(equations, information);
+    RootOfEquations root(equations, information.effect, ROUNDING);
+    information.root = std::move(root.ofCameras);
+    information.residual = std::move(root.residual);
+    information.poses = std::move(root.poses);
+    information.ofInner += information.poses.residual.squaredNorm();
+    information.equations = std::make_shared<NormalEquations>(std::move(equations));
     return information;
 }
 

@@ -20,10 +20,11 @@ bool optimizePoses(Problem& problem, double& squaredError);         //!< of targ
 bool optimizePoints(Problem& problem, double& squaredError);        //!< of a scene
 
 /** A scene's clusters each by itself: the squares of each at its best, which is where it is then; infinite where one of its points has
-no image to begin with, and stays there. */
-std::vector<double> optimizeClusters(Problem& problem);
-//! The information of each cluster's coordinates where it is, the cameras staying.
-std::vector<Eigen::MatrixXd> clusterInformation(const Problem& problem);
+no image to begin with, and stays there.
+@param onlyTied those of several points; the others stay where they are, with squares of 0 */
+std::vector<double> optimizeClusters(Problem& problem, bool onlyTied);
+//! The information of the coordinates of each cluster of several points where it is, the cameras staying.
+std::vector<Eigen::MatrixXd> informationOfTied(const Problem& problem);
 
 //! All values of the inner blocks, one block after the other: to come back to.
 Eigen::VectorXd innerValues(const Problem& problem);

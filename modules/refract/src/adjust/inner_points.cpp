@@ -30,22 +30,33 @@ struct ClusterSearch
     bool isDone = false;
 };
 
-//! All images at the current points: residuals, and derivatives by the pose's translation in the scene's frame.
+Image partOf(const Image& image, const std::vector<int>& rows)
+{
+    Image part = { image.view, image.camera, image.refracted, {}, {} };
+    for (int row : rows)
+    {
+        part.points.object.push_back(image.points.object[row]);
+        part.points.pixel.push_back(image.points.pixel[row]);
+        if (!image.points.whitening.empty())
+            part.points.whitening.push_back(image.points.whitening[row]);
+        part.rootWeights.push_back(image.rootWeights[row]);
+    }
+    return part;
+}
+
+//! Images at the current points: residuals, and derivatives by these.
 class SceneRows
 {
 public:
     explicit SceneRows(const Problem& problem) : problem_(problem), images_(problem.images().size()) {}
 
-    void update()
+    //! @param isWanted per cluster
+    void update(const std::vector<uchar>& isWanted)
     {
         parallel_for_(Range(0, (int)images_.size()), [&](const Range& range)
         {
             for (int i = range.start; i < range.end; i++)
-            {
-                const Image& image = problem_.images()[i];
-                problem_.evaluate(image, image.rootWeights, Problem::BY_POSE, images_[i]);
-                images_[i].byPose.rightCols<3>() = problem_.byScenePoint(image, images_[i].byPose);
-            }
+                updateImage(problem_.images()[i], isWanted, images_[i]);
         });
     }
 
@@ -62,7 +73,7 @@ public:
             if (image.rootWeights[o.row] == 0)
                 continue;
             const Eigen::Vector2d residual = images_[o.image].residuals.segment<2>(2*o.row);
-            const Eigen::Matrix<double, 2, 3> E = images_[o.image].byPose.block<2, 3>(2*o.row, 3);
+            const Eigen::Matrix<double, 2, 3> E = images_[o.image].byPose.middleRows<2>(2*o.row);
             const int at = 3*problem_.scene().placeInCluster(image.points.index[o.row]);
             sum.value += residual.squaredNorm();
             sum.matrix.block<3, 3>(at, at) += E.transpose()*E;
@@ -73,8 +84,29 @@ public:
     }
 
 private:
+    void updateImage(const Image& image, const std::vector<uchar>& isWanted, Problem::Derivatives& rows) const
+    {
+        std::vector<int> wanted;
+        for (int row = 0; row < (int)image.rootWeights.size(); row++)
+            if (image.rootWeights[row] > 0 && isWanted[problem_.scene().clusterOf(image.points.index[row])])
+                wanted.push_back(row);
+        if (wanted.empty())
+            return;
+        const Image some = partOf(image, wanted);
+        Problem::Derivatives ofSome;
+        problem_.evaluate(some, some.rootWeights, Problem::BY_POSE, ofSome);
+        rows.residuals.resize(2*image.rootWeights.size());
+        rows.byPose.resize(rows.residuals.size(), 3);
+        const RowMajorMatrix byPoint = problem_.byScenePoint(some, ofSome.byPose);
+        for (size_t k = 0; k < wanted.size(); k++)
+        {
+            rows.residuals.segment<2>(2*wanted[k]) = ofSome.residuals.segment<2>(2*k);
+            rows.byPose.middleRows<2>(2*wanted[k]) = byPoint.middleRows<2>(2*k);
+        }
+    }
+
     const Problem& problem_;
-    std::vector<Problem::Derivatives> images_;
+    std::vector<Problem::Derivatives> images_;      //!< byPose: by the points
 };
 
 //! @param gain of squares that the step promises
@@ -89,28 +121,35 @@ VectorXd stepOf(const ClusterSquares& sum, double damping, double& gain)
     return scale.cwiseProduct(step);
 }
 
-//! Of the clusters that have an image: what one of them may still gain is little against it.
-double meanSquares(const std::vector<ClusterSearch>& searches)
+//! Of the clusters that have an image.
+double sumOfSquares(const std::vector<ClusterSearch>& searches)
 {
     double sum = 0;
     for (const ClusterSearch& search : searches)
         if (std::isfinite(search.best.value))
             sum += search.best.value;
-    return sum/std::max((double)searches.size(), 1.);
+    return sum;
 }
 
 } // namespace
 
-std::vector<double> optimizeClusters(Problem& problem)
+std::vector<double> optimizeClusters(Problem& problem, bool onlyTied)
 {
     const int ROUNDS = 50;
     std::vector<Cluster>& clusters = problem.scene().clusters();
     std::vector<ClusterSearch> searches(clusters.size());
+    std::vector<uchar> isWanted;
+    for (size_t i = 0; i < clusters.size(); i++)
+    {
+        searches[i].isDone = onlyTied && clusters[i].points.size() < 2;
+        isWanted.push_back(!searches[i].isDone);
+    }
+    const int wanted = (int)std::count(isWanted.begin(), isWanted.end(), 1);
     SceneRows rows(problem);
     bool areDone = false;
     for (int round = 0; round < ROUNDS && !areDone; round++)
     {
-        rows.update();
+        rows.update(isWanted);
         parallel_for_(Range(0, (int)clusters.size()), [&](const Range& range)
         {
             for (int i = range.start; i < range.end; i++)
@@ -130,12 +169,13 @@ std::vector<double> optimizeClusters(Problem& problem)
                 }
             }
         });
-        const double mean = meanSquares(searches);
+        const double mean = sumOfSquares(searches)/std::max(wanted, 1);
         areDone = true;
         for (size_t i = 0; i < clusters.size(); i++)
         {
             ClusterSearch& search = searches[i];
             search.isDone = search.isDone || !std::isfinite(search.best.value);
+            isWanted[i] = !search.isDone;
             if (search.isDone)
                 continue;
             double gain;
@@ -143,6 +183,7 @@ std::vector<double> optimizeClusters(Problem& problem)
             search.isDone = round + 1 == ROUNDS || search.control.isHopeless() ||
                             StepControl::isNegligible(gain, std::max(mean, search.best.value), 6);
             clusters[i].values = search.isDone ? search.values : VectorXd(search.values + step);
+            isWanted[i] = !search.isDone;
             areDone = areDone && search.isDone;
         }
         problem.placePoints(problem.scene().points());
@@ -153,19 +194,24 @@ std::vector<double> optimizeClusters(Problem& problem)
     return squares;
 }
 
-std::vector<MatrixXd> clusterInformation(const Problem& problem)
+std::vector<MatrixXd> informationOfTied(const Problem& problem)
 {
     SceneRows rows(problem);
-    rows.update();
-    std::vector<MatrixXd> matrices;
-    for (int i = 0; i < (int)problem.scene().clusters().size(); i++)
-        matrices.push_back(rows.squaresOf(i).matrix);
+    const std::vector<Cluster>& clusters = problem.scene().clusters();
+    std::vector<uchar> isWanted;
+    for (const Cluster& cluster : clusters)
+        isWanted.push_back(cluster.points.size() > 1);
+    rows.update(isWanted);
+    std::vector<MatrixXd> matrices(clusters.size());
+    for (size_t i = 0; i < clusters.size(); i++)
+        if (isWanted[i])
+            matrices[i] = rows.squaresOf((int)i).matrix;
     return matrices;
 }
 
 bool optimizePoints(Problem& problem, double& squaredError)
 {
-    const std::vector<double> squares = optimizeClusters(problem);
+    const std::vector<double> squares = optimizeClusters(problem, false);
     squaredError = std::accumulate(squares.begin(), squares.end(), 0.);
     for (int block = 0; block < problem.outerCount(); block++)
         squaredError += problem.priorResidual(block).squaredNorm();

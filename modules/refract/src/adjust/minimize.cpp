@@ -2,7 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-/* The joint problem on Ceres' trust region.
+/* The joint problem on Ceres' trust region; a scene's steps by Levenberg and Marquardt are its own (damped_steps.hpp).
 
 Ceres keeps bounds by projecting each step, and creeps where a step's other coordinates rely on the one that was cut off.
 So every few iterations a coordinate that lies on its bound, with the cost falling beyond it, is held there, and is let go
@@ -13,6 +13,7 @@ A small change of the cost is no proof of a minimum: the step that is left to th
 below what the noise does. */
 
 #include "adjust/minimize.hpp"
+#include "adjust/damped_steps.hpp"
 #include "adjust/inner.hpp"
 #include "adjust/reduced_cost.hpp"
 #include "adjust/silence.hpp"
@@ -31,7 +32,7 @@ struct TrustRegion
 {
     ceres::TrustRegionStrategyType strategy;
     double change;          //!< of the cost, relative, that ends them
-    double radius;          //!< of the first step; out: of the next
+    double radius;          //!< of the first step; out: of the next; of a scene's by Levenberg and Marquardt the inverse of the damping
     int iterations = 0;     //!< at most; out: how many were made
     ceres::TerminationType outcome = ceres::NO_CONVERGENCE;     //!< out
     bool isIdle = false;    //!< out: the same again would not move anything
@@ -93,11 +94,12 @@ class Minimization
 {
 public:
     explicit Minimization(Problem& problem);
-    FitOutcome run(const TermCriteria& criteria);
+    FitOutcome run(const TermCriteria& criteria, double& damping);
 
 private:
     bool solve(TrustRegion& region);
     void solve(TrustRegion& region, const std::vector<double*>& state);
+    void descend(TrustRegion& region);
     bool isOnBound() const;
     bool holdAtBounds();
     bool touchesTarget(int block) const;
@@ -155,6 +157,17 @@ void Minimization::solve(TrustRegion& region, const std::vector<double*>& state)
     region.solve(problem, groups.size() > 1);
 }
 
+void Minimization::descend(TrustRegion& region)
+{
+    DampedSteps steps = { (double)problem_.equationCount(), region.change, 1/region.radius, region.iterations, false };
+    const double begin = cost_->squaredError(), before = region.radius;
+    steps.run(*cost_);
+    region.iterations = std::max(1, steps.iterations);
+    region.radius = 1/steps.damping;
+    region.outcome = steps.isConverged ? ceres::CONVERGENCE : ceres::NO_CONVERGENCE;
+    region.isIdle = cost_->squaredError() == begin && region.radius == before && !(region.change > 0.1*DBL_EPSILON);
+}
+
 /** The problem comes to where Ceres ends, and the cost is linearised there.
 @return false if the cost has no derivatives where it begins */
 bool Minimization::solve(TrustRegion& region)
@@ -180,7 +193,10 @@ bool Minimization::solve(TrustRegion& region)
         region.isIdle = true;
         return true;
     }
-    solve(region, state);
+    if (problem_.hasScene() && region.strategy == ceres::LEVENBERG_MARQUARDT)
+        descend(region);
+    else
+        solve(region, state);
     if (cost_->linearize())
         return true;
     for (size_t k = 0; k < begin.size(); k++)
@@ -270,15 +286,16 @@ bool Minimization::isAtMinimum() const
 /** Along curved valleys (distance against focal length) the steps of Levenberg and Marquardt creep, near the edge of the
 domain those of the dogleg do: they take turns. Where a change of the cost is small that is not at a minimum, a smaller one is
 asked for. */
-FitOutcome Minimization::run(const TermCriteria& criteria)
+FitOutcome Minimization::run(const TermCriteria& criteria, double& damping)
 {
     const int ITERATIONS_BETWEEN = 20;
     const bool stopsByChange = (criteria.type & TermCriteria::EPS) != 0;
-    const double change = stopsByChange ? criteria.epsilon : 0., radius = ceres::Solver::Options().initial_trust_region_radius;
+    const double change = stopsByChange ? criteria.epsilon : 0., radius = 1/FIRST_DAMPING;
     const double STRICTER = 1e-2;
     const int IDLE = 40;                // turns of a single step in a row: more would not help either
     const TrustRegion fresh[] = { { ceres::LEVENBERG_MARQUARDT, change, radius }, { ceres::DOGLEG, change, radius } };
     TrustRegion regions[] = { fresh[0], fresh[1] };
+    regions[0].radius = std::max(1/damping, radius);        // exact data end where no step gains anything, whatever the damping
     int left = criteria.maxCount, idle = 0;
     for (int turn = 0; left > 0 && idle < IDLE && !(regions[0].isIdle && regions[1].isIdle); turn = 1 - turn)
     {
@@ -286,6 +303,7 @@ FitOutcome Minimization::run(const TermCriteria& criteria)
         region.iterations = std::min(left, ITERATIONS_BETWEEN);
         if (!solve(region))
             break;
+        damping = 1/regions[0].radius;
         const bool isHeldAnew = region.outcome != ceres::FAILURE && isOnBound() && holdAtBounds();
         if (region.outcome == ceres::CONVERGENCE && !isHeldAnew && isAtMinimum())
             return FitOutcome();
@@ -312,10 +330,16 @@ FitOutcome Minimization::run(const TermCriteria& criteria)
 
 } // namespace
 
-FitOutcome minimize(Problem& problem, const TermCriteria& criteria)
+FitOutcome minimize(Problem& problem, const TermCriteria& criteria, double& damping)
 {
     const FitOutcome start = problem.findPointWithoutImage();
-    return start.converged() ? Minimization(problem).run(criteria) : start;
+    return start.converged() ? Minimization(problem).run(criteria, damping) : start;
+}
+
+FitOutcome minimize(Problem& problem, const TermCriteria& criteria)
+{
+    double damping = FIRST_DAMPING;
+    return minimize(problem, criteria, damping);
 }
 
 }} // namespace

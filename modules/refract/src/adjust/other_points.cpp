@@ -50,7 +50,7 @@ class BestClusters
 public:
     explicit BestClusters(Problem& problem) : problem_(problem)
     {
-        squares_ = optimizeClusters(problem);
+        squares_ = optimizeClusters(problem, true);
         values_ = innerValues(problem);
         hasChanged_.assign(squares_.size(), false);
         ofOthers_.assign(squares_.size(), std::numeric_limits<double>::infinity());
@@ -61,7 +61,7 @@ public:
     {
         const double BETTER = 1e-3;         // of the squares: more than what minimisation leaves
         problem_.placePoints(problem_.scene().points());
-        const std::vector<double> now = optimizeClusters(problem_);
+        const std::vector<double> now = optimizeClusters(problem_, true);
         int at = 0;
         bool isBetter = false;
         for (size_t i = 0; i < now.size(); i++)
@@ -132,7 +132,7 @@ void search(Problem& problem, BestClusters& best)
     const int ROUNDS = 3;
     {
         const ImagesAlone alone(problem);
-        optimizeClusters(problem);
+        optimizeClusters(problem, true);
     }
     bool isBetter = best.improve();
     for (int round = 0; round < ROUNDS && (round == 0 || isBetter); round++)
@@ -141,7 +141,7 @@ void search(Problem& problem, BestClusters& best)
         std::vector<MatrixXd> ofImages;
         {
             const ImagesAlone alone(problem);
-            ofImages = clusterInformation(problem);
+            ofImages = informationOfTied(problem);
         }
         isBetter = false;
         bool isAny = true;

@@ -5,6 +5,7 @@
 #include "adjust/reduced_cost.hpp"
 #include "adjust/inner.hpp"
 #include "math/dense.hpp"
+#include <ceres/manifold.h>
 
 namespace cv { namespace refract {
 
@@ -34,6 +35,40 @@ bool ReducedCost::move()
     }
     problem_.updateCameras();
     return hasMoved;
+}
+
+//! Other values of a block after a step of its free coordinates, no lower than their bounds.
+static VectorXd moved(const ParameterBlock& block, const VectorXd& from, const VectorXd& step)
+{
+    if (!block.isOnManifold())
+        return (from + timesVector(block.tangentBasis(false), step)).cwiseMax(Eigen::Map<const VectorXd>(block.lower.data(), from.size()));
+    const std::unique_ptr<ceres::Manifold> manifold = block.manifold();
+    RowMajorMatrix basis(from.size(), manifold->TangentSize());
+    manifold->PlusJacobian(from.data(), basis.data());
+    const VectorXd scaled = step.cwiseQuotient(basis.colwise().norm().transpose());
+    VectorXd to(from.size());
+    manifold->Plus(from.data(), scaled.data(), to.data());
+    return to;
+}
+
+void ReducedCost::setStep(const VectorXd& step)
+{
+    for (size_t i = 0; i < variable_.size(); i++)
+    {
+        const ParameterBlock& block = problem_.blocks()[variable_[i]];
+        const int first = anchor_->space.first[variable_[i]], own = anchor_->space.columnsOf(variable_[i]);
+        Eigen::Map<VectorXd>(state_[i], block.values.size()) = moved(block, anchor_->values[i], step.segment(first, own));
+    }
+}
+
+void ReducedCost::restore()
+{
+    for (size_t i = 0; i < variable_.size(); i++)
+        Eigen::Map<VectorXd>(state_[i], anchor_->values[i].size()) = anchor_->values[i];
+    move();
+    setInnerValues(problem_, anchor_->inner);
+    squaredError_ = anchor_->squaredError;
+    isCurrent_ = isAnchor_ = true;
 }
 
 void ReducedCost::predictInner()
@@ -81,7 +116,9 @@ bool ReducedCost::linearize()
         return false;
     if (isAnchor_)
         return true;
-    std::unique_ptr<Anchor> anchor(new Anchor{ {}, FreeSpace(problem_, false), innerValues(problem_),
+    if (anchor_)                    // what it predicts is used up, and as large as all else together
+        std::vector<InnerBlock>().swap(anchor_->information.inner);
+    std::unique_ptr<Anchor> anchor(new Anchor{ {}, FreeSpace(problem_, false), innerValues(problem_), squaredError_,
                                                informationOf(problem_, false) });
     const Information& information = anchor->information;
     if (!information.effect.allFinite() || !information.root.allFinite() || !information.residual.allFinite() ||

@@ -24,6 +24,12 @@ public:
     const std::vector<int>& variableBlocks() const { return variable_; }
     /** Where Ceres has the values of the variable blocks, one after the other; before anything is asked. */
     void setState(const std::vector<double*>& state) { state_ = state; }
+    //! What the state is after a step of the free coordinates from where it was linearised last, within its bounds.
+    void setStep(const Eigen::VectorXd& step);
+    void restore();                     //!< to where it was linearised last
+    //! The inner blocks to their best at the state. False where there is no cost.
+    bool optimize();
+    double squaredError() const { return squaredError_; }       //!< where it was optimised last
 
     //! One group of residuals; there are some once the cost was linearised.
     class Group : public ceres::CostFunction
@@ -54,11 +60,11 @@ private:
         std::vector<Eigen::VectorXd> values;        //!< of the variable blocks
         FreeSpace space;
         Eigen::VectorXd inner;
+        double squaredError;
         Information information;
     };
     bool move();
     void predictInner();
-    bool optimize();
     std::vector<int> blocksOf(int group) const;
     RowMajorMatrix rootOf(int group, int variable) const;
     Eigen::VectorXd residualsOf(int group) const;

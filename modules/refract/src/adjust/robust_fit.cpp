@@ -27,7 +27,8 @@ namespace cv { namespace refract {
 static const double LEAST_PIXEL_SIGMA = 1e-3;
 
 RobustFit::RobustFit(Problem& problem, Outliers& outliers, bool isRobust, int seenCount, const TermCriteria& criteria)
-    : problem_(problem), outliers_(outliers), isRobust_(isRobust), seenCount_(seenCount), criteria_(criteria), scale_(0) {}
+    : problem_(problem), outliers_(outliers), isRobust_(isRobust), seenCount_(seenCount), criteria_(criteria), scale_(0),
+      damping_(FIRST_DAMPING) {}
 
 FitOutcome RobustFit::run()
 {
@@ -35,7 +36,7 @@ FitOutcome RobustFit::run()
     FitOutcome outcome;
     for (int round = 0; round < ROUNDS; round++)
     {
-        outcome = isRobust_ ? rejectOutliers() : minimize(problem_, criteria_);
+        outcome = isRobust_ ? rejectOutliers() : minimize(problem_, criteria_, damping_);
         outcome.varianceFactor = isRobust_ ? 1/truncationFactor(CUT) : 1;
         if (!problem_.hasPriors() || !outcome.converged())
             break;
@@ -51,7 +52,7 @@ FitOutcome RobustFit::run()
 FitOutcome RobustFit::approach()
 {
     const TermCriteria few(TermCriteria::COUNT + TermCriteria::EPS, 20, 1e-6);
-    return isRobust_ ? reweightGradually() : minimize(problem_, few);
+    return isRobust_ ? reweightGradually() : minimize(problem_, few, damping_);
 }
 
 //! Distances of predicted from observed pixels, of what may have a say; of halves as large as those of whole pixels usually are.
@@ -131,7 +132,7 @@ FitOutcome RobustFit::reweightGradually()
             problem_.setRootWeights(i, rootWeights);
         }
         // None has an image, as where given poses are turned round?
-        outcome = problem_.pointCount() == 0 ? checkMajority(0) : minimize(problem_, few);
+        outcome = problem_.pointCount() == 0 ? checkMajority(0) : minimize(problem_, few, damping_);
     }
     return outcome;
 }
@@ -240,7 +241,7 @@ FitOutcome RobustFit::solveAndScale()
     FitOutcome outcome = checkMajority(problem_.pointCount());
     if (!outcome.converged())
         return outcome;
-    outcome = minimize(problem_, criteria_);
+    outcome = minimize(problem_, criteria_, damping_);
     if (problem_.freedom() > 0)
         scale_ = std::max(std::sqrt(problem_.squaredError()/(problem_.freedom()*truncationFactor(CUT))), LEAST_SCALE);
     return outcome;

@@ -42,6 +42,7 @@ private:
     const int seenCount_;
     const TermCriteria criteria_;
     double scale_;                      //!< of a pixel coordinate; 0: not known yet
+    double damping_;                    //!< of a scene's next step
     Masks inliers_;
     std::vector<std::vector<uchar> > timesOut_;
 };

@@ -1,0 +1,66 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+/* Where the linearised problem foretells the gain, the damping falls fast: along a strip of views the weak ways, its bending, have a
+millionth of the information that the views next to each other have, and any damping that is seen by it makes them creep. */
+
+#include "adjust/damped_steps.hpp"
+
+namespace cv { namespace refract {
+
+namespace {
+
+const double LEAST = 1e-14;         // of the damping: below it is rounding
+const double MOST = 1e16;
+const double FIRST_AFTER_FAILURE = 1e-8;
+
+//! @param ratio of the gain to what was foretold
+double dampingAfter(double damping, double ratio)
+{
+    const double GOOD = 0.9, FAIR = 0.25;
+    return std::max(LEAST, damping*(ratio > GOOD ? 1e-2 : ratio > FAIR ? 0.3 : 2));
+}
+
+} // namespace
+
+void DampedSteps::run(ReducedCost& cost)
+{
+    const int most = iterations;
+    const double WEAK = 1e-6;       // damping that hides nothing
+    double growth = 4;              // of the damping: failures in a row make it grow faster
+    isConverged = false;
+    for (iterations = 0; iterations < most && damping < MOST && cost.linearize(); iterations++)
+    {
+        const double squares = cost.squaredError();
+        double foretold;
+        cost.setStep(dampedStep(cost.information(), damping, foretold));
+        // Too little to be seen, or to matter: of exact data it is rounding.
+        if (foretold <= std::max(squares*std::min(0.1*change, 1e-7/equations), 1e-24*equations))
+        {
+            cost.restore();
+            isConverged = damping <= WEAK;
+            if (isConverged)
+                return;
+            damping *= 1e-2;
+            continue;
+        }
+        const double gain = cost.optimize() ? squares - cost.squaredError() : -std::numeric_limits<double>::infinity();
+        isConverged = damping <= WEAK && std::abs(gain) <= change*squares;
+        if (gain > 1e-3*foretold || (isConverged && gain >= 0))
+        {
+            damping = dampingAfter(damping, gain/foretold);
+            growth = 4;
+        }
+        else
+        {
+            cost.restore();
+            damping = std::max(FIRST_AFTER_FAILURE, growth*damping);
+            growth *= 4;
+        }
+        if (isConverged)
+            return;
+    }
+}
+
+}} // namespace
