@@ -40,13 +40,14 @@ def rotation(rvec):
 
 def camera_text(window, indent=""):
     n = NORMAL/np.linalg.norm(NORMAL)
+    window = window or dict.fromkeys(WINDOW)        # none
     glass = (f"{{ normal: [ {n[0]:.17g}, {n[1]:.17g}, {n[2]:.17g} ], distance: {window['distance']}, "
              f"thickness: [ {window['thickness']} ], index: [ {window['index']} ], inner_index: 1, outer_index: {window['outer_index']} }}")
     matrix = f"[ {FOCAL}, 0., {(WIDTH - 1)/2}, 0., {FOCAL}, {(HEIGHT - 1)/2}, 0., 0., 1. ]"
     lines = [f"image_width: {WIDTH}", f"image_height: {HEIGHT}",
              f"camera_matrix: !!opencv-matrix {{ rows: 3, cols: 3, dt: d, data: {matrix} }}",
              "distortion_coefficients: !!opencv-matrix { rows: 4, cols: 1, dt: d, data: [ -0.1, 0.03, 0., 0. ] }"]
-    return "".join(indent + line + "\n" for line in lines + ([f"glass_window: {glass}"] if window else []))
+    return "".join(indent + line + "\n" for line in lines + ([f"glass_window: {glass}"] if window["distance"] else []))
 
 
 def cameras():
