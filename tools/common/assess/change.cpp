@@ -265,6 +265,8 @@ private:
         chart("principal point" + of, {"x", "y"});
         add("focal length and principal point" + of + " changed by", c, {percent(WIDE), pixels},
             [lensBy](RigModel& rig, const VectorXd& d) { lensBy(1. + d[0], d[1], d[2])(rig); });
+        for (size_t row = rows.size() - 3; row < rows.size(); row++)
+            rows[row].isOfLens = true;
     }
 
     void addPlace(int c)
@@ -285,14 +287,25 @@ private:
             [c](RigModel& rig, const VectorXd& d) { moveCamera(rig, c, transformOf(first3(d), first3(d, 3))); });
         if (c == 0)
             return;
-        add("R of " + camera + " alone (T as it was" + (count_ == 2 ? ": camera 1 turned about its own centre" : "") + ") changed by", c,
-            {angle(3)}, [c](RigModel& rig, const VectorXd& d) {
-                rig.extrinsics[c].R = rotationMatrix(first3(d))*rig.extrinsics[c].R; });
-        rows.back().isTurn = count_ == 2;
+        addTurnAlone(c);
         const double baseLine = norm(rig_.extrinsics[c].T);
         if (baseLine > 0.)
             add(format("base line (length of T of camera %d) changed by", c + 1), c, {length(1, WIDE*baseLine)},
                 [c, baseLine](RigModel& rig, const VectorXd& d) { rig.extrinsics[c].T *= 1. + d[0]/baseLine; });
+    }
+
+    //! Of two cameras that is a turn of the first, told in its own axes.
+    void addTurnAlone(int c)
+    {
+        const bool isOfFirst = count_ == 2;
+        add(format("R of camera %d alone (T as it was%s) changed by", c + 1, isOfFirst ? ": camera 1 turned about its own centre" : ""), c,
+            {angle(3)}, [c, isOfFirst](RigModel& rig, const VectorXd& d) {
+                if (isOfFirst)
+                    moveCamera(rig, 0, {rotationMatrix(first3(d)), Vec3d()});
+                else
+                    rig.extrinsics[c].R = rotationMatrix(first3(d))*rig.extrinsics[c].R; });
+        rows.back().isTurn = isOfFirst;
+        rows.back().axes = {"x", "y", "z"};
     }
 
     void addTarget()
@@ -352,8 +365,11 @@ std::vector<ChangedValue> valuesOf(const Change& change, const VectorXd& delta, 
         const double variance = along.dot(C*along), across = std::max(0., C.trace() - variance);
         // Errors across it make a vector longer, whatever they are: by as much it may be too long.
         const double longer = length - std::sqrt(std::max(0., length*length - across));
-        values.push_back({quantity.factor*length, quantity.factor*std::hypot(std::sqrt(std::max(0., variance)),
-                                                                             quantity.count > 1 ? longer : 0.), quantity.unit});
+        ChangedValue changed{quantity.factor*length, quantity.factor*std::hypot(std::sqrt(std::max(0., variance)),
+                                                                                quantity.count > 1 ? longer : 0.), quantity.unit};
+        for (int i = 0; change.isTurn && i < quantity.count; i++)
+            changed.aboutAxes.push_back(quantity.factor*Vec2d(part[i], std::sqrt(std::max(0., C(i, i)))));
+        values.push_back(changed);
         at += quantity.count;
     }
     return values;
@@ -363,7 +379,12 @@ std::string sentenceOf(const Change& change, const std::vector<ChangedValue>& va
 {
     std::string text = change.name;
     for (size_t i = 0; i < values.size(); i++)
+    {
         text += (i ? " and " : " ") + plusMinus(values[i].value, values[i].std) + (values[i].unit.empty() ? "" : " " + values[i].unit);
+        for (size_t k = 0; k < values[i].aboutAxes.size(); k++)
+            text += (k ? ", " : " (") + change.axes[k] + " " + plusMinus(values[i].aboutAxes[k][0], values[i].aboutAxes[k][1]);
+        text += values[i].aboutAxes.empty() ? "" : ")";
+    }
     return text;
 }
 

@@ -30,10 +30,11 @@ struct Change
     bool isTilt = false;        //!< of the window of that camera
     bool isShift = false;       //!< of the centre of its dome or tube
     bool isOfAnotherPane = false;       //!< thickness, index, wedge: one that stays where it is keeps them
-    bool isTurn = false;        //!< of that camera about its own centre
+    bool isTurn = false;        //!< of a camera about its own centre
+    bool isOfLens = false;      //!< or the sensor: its mount, or a window's, moves more easily
     //! What may also come slowly, of heat, load or age, has a control chart (history/): its name; empty: none.
     std::string chart = "";
-    std::vector<std::string> axes = {};     //!< of its parameters in that chart
+    std::vector<std::string> axes = {};     //!< of its parameters, in that chart and in sentences
     double chartFactor = 1.;                //!< from the parameter to the chart's unit
 
     int size() const;
@@ -45,6 +46,8 @@ struct ChangedValue
 {
     double value, std;
     std::string unit;
+    //! Of a turn, value and std about each of its axes: one may be known ten times as well as another, which a length does not say.
+    std::vector<cv::Vec2d> aboutAxes = {};
 };
 std::vector<ChangedValue> valuesOf(const Change& change, const VectorXd& delta, const MatrixXd& covariance);
 

@@ -346,9 +346,7 @@ private:
         // Of a large contradiction a small share is much: where one explains it all, what the noise refutes is no other explanation.
         if (result_.explained)
             named_.erase(std::remove_if(named_.begin(), named_.end(), [&](const Candidate& c) { return !isExplained(c); }), named_.end());
-        // What explains as much is told in the order of what can happen: nobody said that the pane is another.
-        std::stable_partition(named_.begin(), named_.end(), [](const Candidate& c) {
-            return !c.tested || !c.tested->change->isOfAnotherPane; });
+        tellWhatCanHappenFirst();
         std::vector<NamedChange>& changes = result_.changes;
         for (const Candidate& c : named_)           // a board that looks the same turned by half can be numbered in two ways
             if (std::none_of(changes.begin(), changes.end(), [&](const NamedChange& n) { return n.sentence == c.named.sentence; }))
@@ -356,6 +354,24 @@ private:
         if (named_.empty())
             return;
         result_.sigmaSeen = result_.sigma*std::sqrt(named_[0].chiSquare/(problem_->observations() - named_[0].parameters));
+    }
+
+    /* What explains as much is told in the order of what can happen. Nobody said that the pane is another. And a camera or a window moves
+    in its mount before a sensor does in its camera: a scene hardly tells a turn from a moved principal point. */
+    void tellWhatCanHappenFirst()
+    {
+        const double AS_LIKELY = 10.;           // difference of two chi^2
+        const auto isOfLens = [](const Candidate& c) { return c.tested && c.tested->change->isOfLens; };
+        if (isScene_ && !named_.empty() && isOfLens(named_[0]))
+        {
+            const double most = named_[0].chiSquare + AS_LIKELY;
+            const auto other = std::find_if(named_.begin(), named_.end(), [&](const Candidate& c) {
+                return !isOfLens(c) && c.chiSquare < most; });
+            if (other != named_.end())
+                std::rotate(named_.begin(), other, other + 1);
+        }
+        std::stable_partition(named_.begin(), named_.end(), [](const Candidate& c) {
+            return !c.tested || !c.tested->change->isOfAnotherPane; });
     }
 
     bool isNamed(const Tested& tested) const
