@@ -9,6 +9,7 @@
 #include "console/file_output.hpp"
 #include "console/outputs.hpp"
 #include "formats/point_table.hpp"
+#include "match/moved_rig.hpp"
 
 #include <iostream>
 
@@ -17,6 +18,7 @@ wand that is waved, particles, any matches. Cameras, windows, R, T and points ar
 
   refract_bundle start.yml --points=matches.csv --lengths=lengths.csv --out=calib.yml       a rig that was never calibrated
   refract_bundle calib.yml --points=matches.csv --out=better.yml                            one that was: what it knows has its say
+  refract_bundle calib.yml --points=matches.csv --turned=0.3 --out=again.yml                a camera was touched meanwhile
   refract_bundle calib.yml --points=matches.csv --free=normal --out=new.yml                 its windows were taken out meanwhile
   refract_bundle calib.yml --colmap=sparse/0 --lengths=lengths.csv --out=again.yml --colmap-out=refracted     images of a rig that moves
 
@@ -65,6 +67,7 @@ struct Options
     PixelOrigin origin;
     SurveyOptions survey;
     double maxRms = 0., pixelSigma = 0.;
+    MayHaveTurned turned = {0., 0.};
     bool robust = true;
 
     bool isSurvey() const { return !survey.model.empty(); }
@@ -79,6 +82,9 @@ void addOptions(OptionParser& parser, Options& o)
     parser.add("--lengths", o.lengths, "known distances between points: [image,]id1,id2,length,std");
     parser.add("--free", o.bundle.free, "what the matches alone must tell; none: nothing").delimiter(',')
         .check(isMember(freeNames()));
+    parser.add("--turned", o.turned.cameras, "of a rig that was calibrated: each camera may have turned about its own centre since, by so "
+        "many degrees, one standard deviation").check(moreThanZero());
+    parser.add("--tilted", o.turned.windows, "the same of each window").check(moreThanZero());
     o.bundle.window.addTo(parser, "needed where the medium on its other side is another");
     o.bundle.std.addTo(parser, false);
     parser.add("--unit", o.bundle.unit, "unit of all lengths (default: that of start.yml, or mm)").check(isMember(unitNames()));
@@ -95,6 +101,19 @@ void addOptions(OptionParser& parser, Options& o)
     parser.add("--poses-out", o.posesOut, "poses.csv to write: of each view, with +-").needs(colmap);
     parser.add("--summary", o.summary, "JSON file with all that is said, and more");
     parser.add("--max-rms", o.maxRms, "limit: RMS over all pixels, px").check(moreThanZero());
+}
+
+//! What --turned and --tilted say comes beside what the calibration knows.
+BundleStart startWith(const Options& o, const BundleOptions& bundle, const Calibration& file)
+{
+    BundleStart start = startOf(file, o.start, bundle);
+    if (!(o.turned.cameras > 0.) && !(o.turned.windows > 0.))
+        return start;
+    if (file.covariance.empty())
+        throw Failure("--turned and --tilted are for a rig that was calibrated, and '" + o.start + "' has no covariance: free what is not "
+                      "known (--free)");
+    start.covariance = covarianceOfMoved({start.rig, start.covariance, 0., 0.}, o.turned);
+    return start;
 }
 
 Calibration resultOf(const Options& o, const BundleAdjustment& adjustment, const BundleFindings& findings, const Calibration& start,
@@ -118,7 +137,7 @@ void explain(const Options& o, const Calibration& file, const Matches& matches, 
     BundleOptions options = o.bundle;
     const std::string explanation = explanationOf(start.free, adjustment.fit.sigma, [&](const std::vector<std::string>& free) {
         options.free = free;
-        const BundleStart freer = startOf(file, o.start, options);
+        const BundleStart freer = startWith(o, options, file);
         requireScale(freer, o.start, matches, lengths);
         return adjustBundle(freer, matches, lengths, o.robust);
     });
@@ -145,7 +164,7 @@ int bundleMatches(const Options& options, const Calibration& file, const Command
         throw Failure("give --points=matches.csv, what the cameras saw, or --colmap=FOLDER of a rig that moved");
     const Matches matches = readMatches(options.points, file, options.start, options.origin.yFrom);
     const GivenLengths lengths = options.lengths.empty() ? GivenLengths() : readLengths(options.lengths, options.points, matches);
-    const BundleStart start = startOf(file, options.start, options.bundle);
+    const BundleStart start = startWith(options, options.bundle, file);
     requireScale(start, options.start, matches, lengths);
     requireSameMoments(start, matches);
     const BundleAdjustment adjustment = adjustBundle(start, matches, lengths, options.robust);
@@ -170,7 +189,7 @@ int bundleSurvey(const Options& options, const Calibration& file, const Command&
     survey.robust = options.robust;
     survey.pixelSigma = options.pixelSigma;
     survey.maxRms = options.maxRms;
-    const BundleStart start = startOf(file, options.start, options.bundle);
+    const BundleStart start = startWith(options, options.bundle, file);
     const SurveyResult result = adjustColmap(survey, start, unitOf(options, file), command.quiet());
     if (!options.pointsOut.empty())
         writeText(options.pointsOut, surveyPointsCsv(result));

@@ -10,10 +10,9 @@
 #include "console/outputs.hpp"
 #include "console/point_file.hpp"
 #include "console/table.hpp"
-#include "report/drawing.hpp"
+#include "report/epipolar_picture.hpp"
 #include "target/missing_target.hpp"
 
-#include <opencv2/imgproc.hpp>
 #include <algorithm>
 #include <cmath>
 #include <iostream>
@@ -35,26 +34,12 @@ namespace {
 using namespace tools;
 using cv::Point2d;
 
-typedef std::vector<Point2d> Curve;
-
 struct Options
 {
     std::string calibration, image1, image2, points, depth, out;
     TargetOptions target;
     bool noWindow = false;
 };
-
-std::vector<Curve> curvesOf(const Calibration& rig, const std::vector<Point2d>& points, const cv::Vec2d& depth)
-{
-    std::vector<cv::Mat> lines;
-    cv::refract::computeRefractiveEpilines(points, 1, rig.cameras[0].camera, rig.cameras[1].camera, rig.extrinsics[1].R,
-                                           rig.extrinsics[1].T, depth,
-                                           lines);
-    std::vector<Curve> curves;
-    for (const cv::Mat& line : lines)
-        curves.push_back(line.empty() ? Curve() : Curve(line.begin<Point2d>(), line.end<Point2d>()));
-    return curves;
-}
 
 double distanceTo(const Curve& curve, const Point2d& p)
 {
@@ -116,35 +101,6 @@ std::vector<Point2d> detectIn(const cv::Mat& image, const std::string& path, con
     if (points.empty())
         throw Failure("the target was not found in '" + path + "': check --pattern and --size, or give --points=FILE");
     return points;
-}
-
-//! A little darker, so that the lines stand out.
-cv::Mat ground(const cv::Mat& grey)
-{
-    cv::Mat colour;
-    cv::cvtColor(grey*0.75, colour, cv::COLOR_GRAY2BGR);
-    return colour;
-}
-
-cv::Mat draw(const cv::Mat& image1, const cv::Mat& image2, const std::vector<Point2d>& points,
-             const std::vector<Point2d>& partners, const std::vector<Curve>& curves, const std::vector<Curve>& ignored)
-{
-    const int n = (int)points.size();
-    cv::Mat left = ground(image1), right = ground(image2);
-    for (int i = 0; i < n; i++)
-    {
-        drawRing(left, points[i], colourOf(i, n));
-        drawCurve(right, ignored[i], colourOf(i, n)*0.8, 7.);
-        drawCurve(right, curves[i], colourOf(i, n));
-    }
-    for (size_t i = 0; i < partners.size(); i++)
-        drawRing(right, partners[i], colourOf((int)i, n));
-    drawCaption(left, "image 1: points", cv::Point(12, 26));
-    drawCaption(right, "image 2: solid through the windows, dashed windows ignored", cv::Point(12, 26));
-    cv::Mat picture(std::max(left.rows, right.rows), left.cols + right.cols + 8, CV_8UC3, cv::Scalar::all(255));
-    left.copyTo(picture(cv::Rect(cv::Point(0, 0), left.size())));
-    right.copyTo(picture(cv::Rect(cv::Point(left.cols + 8, 0), right.size())));
-    return picture;
 }
 
 //! Empty, or what is wrong if most of the target's points in both images contradict the calibration.
@@ -216,7 +172,7 @@ int refract_epilines_main(int argc, char** argv)
                                                       : parseDepthRange(options.depth, "--depth");
         const std::vector<Curve> curves = curvesOf(rig, points, depth);
         const std::vector<Curve> ignored = curvesOf(withoutWindows(rig), points, depth);
-        writeImage(options.out, draw(image1, image2, points, partners, curves, ignored));
+        writeImage(options.out, epipolarPicture(image1, image2, points, partners, curves, ignored));
         if (!command.quiet() && !partners.empty())
         {
             Table table({"distance of the partners from their curves, px", "points", "RMS", "largest"});

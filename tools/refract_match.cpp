@@ -7,7 +7,9 @@
 #include "console/outputs.hpp"
 #include "console/table.hpp"
 #include "match/depth_range.hpp"
+#include "match/features.hpp"
 #include "match/scene_matches.hpp"
+#include "report/epipolar_picture.hpp"
 
 #include <iostream>
 #include <sstream>
@@ -20,15 +22,18 @@ One image, quoted glob, numbered images (left%04d.png) or video of each camera o
 have equal stems. --depth is the range of z of the scene in the frame of camera 1, in the unit of calib.yml; without it, the calibrated
 volume and half as far again.
 
-Features (OpenCV's SIFT) are compared only where they are near the refracted epipolar curve; a match is one that two features choose each
-other for, clearly before all others. --search is how far from the curve they may be: by default, what the calibration does not know, and
-what a turn by 0.3 degrees since then does. At most --count are taken, spread over image and depth. Then all are fitted, with the rig within
-what is known of it and what may have turned: a match that no point explains is left out.
+Features (--features: OpenCV's SIFT, or what else it has) are compared only where they are near the refracted epipolar curve; a match is
+one that two features choose each other for, clearly before all others. --search is how far from the curve they may be: by default, what
+the calibration does not know, and what a turn by 0.3 degrees since then does. At most --count are taken, spread over image and depth. Then
+all are fitted, with the rig within what is known of it and what may have turned: a match that no point explains is left out.
 
 matches.csv: image,id,u1,v1,u2,v2,...,std1,std2,..., raw pixels, and how well each is known, one standard deviation of a coordinate. It
 follows from the residuals of the matches by the size of the features. For refract_bundle; refract_check --scene does both.
 
-Of two cameras a wrong match along the curve cannot be seen; the count that is expected is said.)";
+Of two cameras a wrong match along the curve cannot be seen; the count that is expected is said.
+
+--picture draws some of the first moment's matches: points of camera 1, and in camera 2 their curves (dashed: with the windows ignored) and
+partners. The residuals are told beside those of the same matches with the windows ignored.)";
 
 namespace {
 
@@ -36,7 +41,7 @@ using namespace tools;
 
 struct Options
 {
-    std::string calibration, depth, out;
+    std::string calibration, depth, out, picture;
     std::vector<std::string> images;
     SceneOptions scene;
     bool noWindow = false;
@@ -49,8 +54,11 @@ void addOptions(OptionParser& parser, Options& o)
     parser.add("--depth", o.depth, "NEAR,FAR: z of the scene in the frame of camera 1; FAR may be inf");
     parser.add("--search", o.scene.search, "pixels from the epipolar curve within which partners are looked for").check(moreThanZero());
     parser.add("--count", o.scene.count, "matches at most").check(isCount()).captureDefault();
-    parser.add("--features", o.scene.features, "features of an image at most").check(isCount()).captureDefault();
+    parser.add("--features", o.scene.features, "of OpenCV: SIFT is placed best, ORB is fastest").check(isMember(featureNames()))
+        .captureDefault();
+    parser.add("--most-features", o.scene.mostFeatures, "features of an image at most, the strongest").check(isCount()).captureDefault();
     parser.add("--out", o.out, "matches.csv to write").required();
+    parser.add("--picture", o.picture, "picture to write: matches of cameras 1 and 2, and their curves");
     parser.addFlag("--no-window", o.noWindow, "calib.yml has no glass_window, and there is none");
 }
 
@@ -75,12 +83,38 @@ std::string csvOf(const Matches& matches)
     return csv.str();
 }
 
-void print(const SceneMatches& result)
+//! Some matches of cameras 1 and 2 of the first moment that has any, spread over the image.
+cv::Mat pictureOf(const SceneMatches& result, const Calibration& calibration, std::vector<Frames>& frames, const cv::Vec2d& depth)
+{
+    const int MOST = 24;
+    const Matches& m = result.good.matches;
+    const auto isSeen = [&](int i) { return m.isSeen(0, i) && m.isSeen(1, i); };
+    std::vector<int> first;
+    for (int i = 0; i < result.good.size(); i++)
+        if (isSeen(i) && (first.empty() || m.names[i].image == m.names[first[0]].image))
+            first.push_back(i);
+    if (first.empty())
+        throw Failure("--picture: cameras 1 and 2 have no match");
+    const Calibration pair = firstPair(calibration);
+    std::vector<cv::Point2d> points, partners;
+    const ScaledMatches ofFirst = result.good.only(first);
+    for (int i : spreadChoice(ofFirst, modelOf(calibration), MOST))
+    {
+        points.push_back(ofFirst.matches.pixels[0][i]);
+        partners.push_back(ofFirst.matches.pixels[1][i]);
+    }
+    const std::vector<cv::Mat> images = imagesOfMoment(calibration, frames, m.names[first[0]].image);
+    return epipolarPicture(images[0], images[1], points, partners, curvesOf(pair, points, depth),
+                           curvesOf(withoutWindows(pair), points, depth));
+}
+
+void print(const SceneMatches& result, double withoutWindows)
 {
     std::cout << format("%zu matches of %d moment%s, %d of them left out as no point explains them; about %.0f wrong ones are left\n",
                         result.good.matches.names.size(), result.moments, result.moments == 1 ? "" : "s", result.leftOut, result.wrongLeft)
               << format("%d were found within %.1f px of their curves, %d taken, spread over image and depth\n", result.found,
                         result.search, result.chosen)
+              << format("residuals: %.3f px RMS; the same matches with the windows ignored: %.3f px\n", result.residual, withoutWindows)
               << format("standard deviation of a pixel: %.3f px, by the size s of a feature sqrt(%.3f^2 + (%.3f s)^2)\n",
                         result.good.matches.usualStd(), result.noise.floor, result.noise.share);
 }
@@ -96,14 +130,16 @@ int refract_match_main(int argc, char** argv)
         warnOfContradictions(calibration, options.calibration, command);
         std::vector<std::string> inputs = options.images;
         inputs.insert(inputs.end(), {options.calibration, command.settings()});
-        checkOutputs({{"--out", options.out, OUTPUT_TEXT}}, inputs);
+        checkOutputs({{"--out", options.out, OUTPUT_TEXT}, {"--picture", options.picture, OUTPUT_PICTURE}}, inputs);
         std::vector<Frames> frames = framesOf(options.images, calibration, options.calibration);
         options.scene.depth = options.depth.empty() ? calibratedDepthRange(calibration, options.calibration)
                                                     : givenDepthRange(options.depth, calibration);
         const SceneMatches result = matchScene(calibration, frames, options.scene, command.quiet());
         writeText(options.out, csvOf(result.good.matches));
+        if (!options.picture.empty())
+            writeImage(options.picture, pictureOf(result, calibration, frames, options.scene.depth));
         if (!command.quiet())
-            print(result);
+            print(result, residualWithoutWindows(calibration, result.good));
         return DONE;
     });
 }

@@ -54,6 +54,30 @@ TEST_CASE("Matches of the bundled scene go into refract_bundle", "[programs][mat
     CHECK(mentions(bundle.out, "USABLE"));
 }
 
+TEST_CASE("Matches by other features of OpenCV, and a picture of them", "[programs][match]")
+{
+    const TemporaryFolder f;
+    for (const char* features : { "ORB", "AKAZE" })
+    {
+        const ToolResult match = runTool("refract_match " + CALIB + " " + LEFT + " " + RIGHT + DEPTH + " --features=" + features
+                                         + " --most-features=2000 --picture=" + f / "m.png" + " --out=" + f / "matches.csv");
+        INFO(features << match.err + match.out);
+        REQUIRE(match.code == 0);
+        CHECK(mentions(match.out, "the same matches with the windows ignored"));
+        const std::string csv = readFile(f / "matches.csv");
+        CHECK(std::count(csv.begin(), csv.end(), '\n') > 150);
+        const cv::Mat picture = cv::imread(f / "m.png"), left = cv::imread(LEFT);
+        CHECK(picture.cols > 2*left.cols);
+        CHECK(picture.rows == left.rows);
+        std::filesystem::remove(f / "m.png");
+    }
+    const ToolResult wrong = runTool("refract_match " + CALIB + " " + LEFT + " " + RIGHT + DEPTH + " --features=SURFACES --out="
+                                     + f / "none.csv");
+    CHECK(wrong.code == 1);
+    CHECK(mentions(wrong.err, "SIFT"));
+    CHECK(!std::filesystem::exists(f / "none.csv"));
+}
+
 TEST_CASE("refract_match says what is wrong with its input", "[programs][match]")
 {
     const TemporaryFolder f;
@@ -139,4 +163,104 @@ TEST_CASE("Images of cameras that are exchanged are named, and those of another 
     INFO(result.err + result.out);
     CHECK(result.code == 1);
     CHECK(mentions(result.err, "is the calibration of this rig"));
+}
+
+TEST_CASE("Images that are not sharp enough for any rig are said to be that", "[programs][match][check]")
+{
+    const TemporaryFolder f;
+    cv::Mat right = cv::imread(RIGHT);
+    cv::RNG random(11);
+    cv::Mat u(right.size(), CV_32F), v(right.size(), CV_32F);
+    random.fill(u, cv::RNG::NORMAL, 0, 300);
+    random.fill(v, cv::RNG::NORMAL, 0, 300);
+    cv::GaussianBlur(u, u, cv::Size(), 15);
+    cv::GaussianBlur(v, v, cv::Size(), 15);
+    for (int y = 0; y < right.rows; y++)
+        for (int x = 0; x < right.cols; x++)
+        {
+            u.at<float>(y, x) += (float)x;
+            v.at<float>(y, x) += (float)y;
+        }
+    cv::Mat wavy;
+    cv::remap(right, wavy, u, v, cv::INTER_LINEAR);
+    cv::imwrite(f / "wavy.png", wavy);
+    const ToolResult result = check(CALIB, LEFT, f / "wavy.png");
+    INFO(result.err + result.out);
+    CHECK(result.code == 1);
+    CHECK(mentions(result.err, "miss each other's rays by"));
+    CHECK(!mentions(result.err, "0 of"));
+}
+
+TEST_CASE("Checks by a scene have a history: the second is another, and a turn that comes slowly is drawn", "[programs][match][history]")
+{
+    const TemporaryFolder f;
+    writeTurned(f / "before.yml", cv::Vec3d(0.01, 0, 0));
+    const cv::Mat left = cv::imread(LEFT), right = cv::imread(RIGHT);
+    cv::RNG random(5);
+    const auto write = [&](const std::string& path, const cv::Mat& image) {
+        cv::Mat noise(image.size(), image.type()), noisy;
+        random.fill(noise, cv::RNG::NORMAL, 10, 2);
+        cv::add(image, noise, noisy);
+        cv::subtract(noisy, cv::Scalar::all(10), noisy);
+        cv::imwrite(path, noisy);
+    };
+    for (const std::string& calibration : { CALIB, f / "before.yml" })
+    {
+        const std::string history = " --history=" + f / (calibration == CALIB ? "same.json" : "turned.json");
+        for (int month = 1; month <= 3; month++)
+        {
+            write(f / "l.png", left);
+            write(f / "r.png", right);
+            const ToolResult result = check(calibration, f / "l.png", f / "r.png",
+                                            EXACT + history + cv::format(" --time=2025-%02d-01", month));
+            INFO(result.err + result.out);
+            CHECK(result.code == (calibration == CALIB ? 0 : 2));
+            CHECK(mentions(result.out, cv::format("History of %d check", month)));
+            if (calibration != CALIB)
+                CHECK(mentions(result.out, "R of camera 2"));
+            if (month == 3)
+            {
+                const ToolResult again = check(calibration, f / "l.png", f / "r.png", EXACT + history + " --time=2025-04-01");
+                INFO(again.err + again.out);
+                CHECK(again.code == 1);
+            }
+        }
+        CHECK(std::filesystem::exists(f / (calibration == CALIB ? "same.html" : "turned.html")));
+    }
+}
+
+TEST_CASE("A rig of which a camera turned is calibrated again by its scene", "[programs][match][bundle]")
+{
+    const TemporaryFolder f;
+    // A covariance: all of R and T known to a hundredth of a degree and to 0.01 mm.
+    std::vector<cv::Ptr<cv::refract::RefractiveCamera> > cameras;
+    std::vector<cv::Mat> Rs, Ts;
+    cv::refract::readRig(CALIB, cameras, Rs, Ts);
+    const cv::Mat truth = Rs[1].clone();
+    cv::Mat R;
+    cv::Rodrigues(cv::Vec3d(0.2, -0.1, 0.15)*(CV_PI/180), R);
+    Rs[1] = R*Rs[1];
+    Ts[1] = R*Ts[1];
+    const int places = (int)(cameras[0]->parameterNames().size() + cameras[1]->parameterNames().size());
+    cv::Mat covariance = cv::Mat::zeros(places + 6, places + 6, CV_64F);
+    for (int i = 0; i < 6; i++)
+        covariance.at<double>(places + i, places + i) = std::pow(i < 3 ? 0.01*CV_PI/180 : 0.01, 2);
+    cv::refract::writeRig(f / "before.yml", cameras, Rs, Ts, {}, covariance);
+    ToolResult result = runTool("refract_match " + f / "before.yml" + " " + LEFT + " " + RIGHT + DEPTH + " --out=" + f / "matches.csv");
+    INFO(result.err + result.out);
+    REQUIRE(result.code == 0);
+    result = runTool("refract_bundle " + f / "before.yml" + " --points=" + f / "matches.csv --turned=0.3 --out=" + f / "again.yml");
+    INFO(result.err + result.out);
+    CHECK(result.code == 0);
+    cv::Mat found;
+    std::vector<int> windows;
+    cv::refract::readRig(f / "again.yml", cameras, Rs, Ts, windows, found);
+    cv::Mat off;
+    cv::Rodrigues(Rs[1]*truth.t(), off);
+    CHECK(cv::norm(off) < 0.03*CV_PI/180);
+    for (int i = 0; i < 3; i++)
+        CHECK(std::abs(off.at<double>(i)) < 4*std::sqrt(found.at<double>(places + i, places + i)));
+    result = runTool("refract_bundle " + CALIB + " --points=" + f / "matches.csv --turned=0.3 --out=" + f / "none.yml");
+    CHECK(result.code == 1);
+    CHECK(mentions(result.err, "--turned"));
 }

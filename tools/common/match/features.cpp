@@ -5,7 +5,10 @@
 
 #include <opencv2/features2d.hpp>
 #include <opencv2/imgproc.hpp>
+#include <algorithm>
 #include <cmath>
+#include <map>
+#include <mutex>
 
 using namespace cv;
 
@@ -13,11 +16,34 @@ namespace tools {
 
 namespace {
 
-//! Where the detector says that a blob is, from where it is: versions of OpenCV that double the image by cv::resize are a quarter of a
-//! pixel off, at all scales.
-Point2d offsetOfDetector()
+struct Kind
+{
+    const char* name;
+    Ptr<Feature2D> (*create)(int most);
+};
+
+const Kind KINDS[] = {
+    {"SIFT", [](int most) -> Ptr<Feature2D> { return SIFT::create(most); }},
+    {"ORB", [](int most) -> Ptr<Feature2D> { return ORB::create(most); }},
+    {"AKAZE", [](int) -> Ptr<Feature2D> { return AKAZE::create(); }},
+    {"KAZE", [](int) -> Ptr<Feature2D> { return KAZE::create(); }},
+    {"BRISK", [](int) -> Ptr<Feature2D> { return BRISK::create(); }},
+};
+
+const Kind& kindOf(const std::string& name)
+{
+    for (const Kind& kind : KINDS)
+        if (name == kind.name)
+            return kind;
+    CV_Error(Error::StsBadArg, "no features are called '" + name + "'");
+}
+
+//! Where a detector says that a blob is, from where it is: versions of OpenCV that double the image of SIFT by cv::resize are a quarter of
+//! a pixel off, at all scales. Of detectors of corners, which find no blob, 0.
+Point2d offsetOf(const Kind& kind)
 {
     const double SIZE = 64., SIGMA = 4.;
+    const int ALL = 100;
     const Point2d truth(31.3, 32.4);
     Mat grey((int)SIZE, (int)SIZE, CV_8U);
     for (int v = 0; v < grey.rows; v++)
@@ -27,7 +53,7 @@ Point2d offsetOfDetector()
             grey.at<uchar>(v, u) = saturate_cast<uchar>(40. + 180.*std::exp(-0.5*d.dot(d)/(SIGMA*SIGMA)));
         }
     std::vector<KeyPoint> found;
-    SIFT::create()->detect(grey, found);
+    kind.create(ALL)->detect(grey, found);
     Point2d offset;
     double least = 1.;              // px; farther off it is another blob
     for (const KeyPoint& point : found)
@@ -40,20 +66,52 @@ Point2d offsetOfDetector()
     return Point2d(std::round(QUARTERS*offset.x), std::round(QUARTERS*offset.y))*(1./QUARTERS);
 }
 
+//! Measured once.
+Point2d knownOffsetOf(const Kind& kind)
+{
+    static std::mutex mutex;
+    static std::map<std::string, Point2d> offsets;
+    const std::lock_guard<std::mutex> lock(mutex);
+    const auto known = offsets.find(kind.name);
+    return known != offsets.end() ? known->second : offsets[kind.name] = offsetOf(kind);
+}
+
 } // namespace
 
-Features featuresOf(const Mat& grey, int most)
+std::vector<std::string> featureNames()
 {
-    static const Point2d offset = offsetOfDetector();
+    std::vector<std::string> names;
+    for (const Kind& kind : KINDS)
+        names.push_back(kind.name);
+    return names;
+}
+
+Features featuresOf(const Mat& grey, int most, const std::string& name)
+{
+    const Kind& kind = kindOf(name);
+    const Point2d offset = knownOffsetOf(kind);
     std::vector<KeyPoint> found;
-    Features features;
-    SIFT::create(most)->detectAndCompute(grey, noArray(), found, features.descriptors);
-    for (const KeyPoint& point : found)
+    Mat descriptors;
+    kind.create(most)->detectAndCompute(grey, noArray(), found, descriptors);
+    std::vector<int> strongest;         // not all detectors take a number
+    for (int i = 0; i < (int)found.size(); i++)
+        strongest.push_back(i);
+    if ((int)found.size() > most)
     {
-        features.pixels.push_back(Point2d(point.pt) - offset);
-        features.scales.push_back(0.5*point.size);
+        std::stable_sort(strongest.begin(), strongest.end(), [&](int a, int b) { return found[a].response > found[b].response; });
+        strongest.resize(most);
+    }
+    Features features;
+    features.descriptors.create((int)strongest.size(), descriptors.cols, descriptors.type());
+    for (int i : strongest)
+    {
+        descriptors.row(i).copyTo(features.descriptors.row(features.size()));
+        features.pixels.push_back(Point2d(found[i].pt) - offset);
+        features.scales.push_back(0.5*found[i].size);
     }
     return features;
 }
+
+int normOf(const Features& features) { return features.descriptors.depth() == CV_8U ? NORM_HAMMING : NORM_L2; }
 
 } // namespace tools

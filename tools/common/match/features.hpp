@@ -5,6 +5,7 @@
 #define REFRACT_TOOLS_FEATURES_HPP
 
 #include <opencv2/core.hpp>
+#include <string>
 #include <vector>
 
 /* Features of one image: where, how large, and what they look like. */
@@ -13,14 +14,21 @@ namespace tools {
 struct Features
 {
     std::vector<cv::Point2d> pixels;
-    std::vector<double> scales;     //!< standard deviation of the blob, px
-    cv::Mat descriptors;            //!< CV_32F, a row each
+    std::vector<double> scales;     //!< half the size that the detector states; of SIFT the standard deviation of the blob, px
+    cv::Mat descriptors;            //!< a row each: CV_32F, or CV_8U whose bits are compared
 
     int size() const { return (int)pixels.size(); }
 };
 
-//! OpenCV's SIFT. @param most the strongest; what has several directions is several features at one place
-Features featuresOf(const cv::Mat& grey, int most);
+//! Of OpenCV's features2d, the usual one first.
+std::vector<std::string> featureNames();
+
+/** @param most the strongest; what has several directions is several features at one place
+@param name of featureNames() */
+Features featuresOf(const cv::Mat& grey, int most, const std::string& name = "SIFT");
+
+//! Norm by which descriptors of two images are compared.
+int normOf(const Features& features);
 
 } // namespace tools
 

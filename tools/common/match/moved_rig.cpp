@@ -24,8 +24,8 @@ bool isTurn(const Change& change)
     return std::all_of(change.quantities.begin(), change.quantities.end(), [](const ChangedQuantity& q) { return q.unit == "degrees"; });
 }
 
-//! The parameters of the rig by the angles of all turns, a column each.
-MatrixXd byTurns(const RigModel& rig)
+//! The parameters of the rig by the angles of all turns, a column each, in their standard deviations.
+MatrixXd byTurns(const RigModel& rig, const MayHaveTurned& turned)
 {
     const double STEP = 1e-3;           // cv::Rodrigues takes turns below 1e-5 for none
     const VectorXd p = parametersOf(rig);
@@ -40,7 +40,7 @@ MatrixXd byTurns(const RigModel& rig)
                 change.apply(moved, (side ? STEP : -STEP)*VectorXd::Unit(change.size(), i));
                 values[side] = parametersOf(moved);
             }
-            columns.push_back((values[1] - values[0])/(2.*STEP));
+            columns.push_back((change.isTilt ? turned.windows : turned.cameras)*DEGREE*(values[1] - values[0])/(2.*STEP));
         }
     MatrixXd D(p.size(), columns.size());
     for (size_t i = 0; i < columns.size(); i++)
@@ -71,9 +71,9 @@ std::vector<Point3d> pointsInBoth(const RigModel& rig, int first, int second, co
 
 } // namespace
 
-Mat covarianceOfMoved(const CheckInput& input, double degrees)
+Mat covarianceOfMoved(const CheckInput& input, const MayHaveTurned& turned)
 {
-    const MatrixXd D = byTurns(input.rig)*(degrees*DEGREE);
+    const MatrixXd D = byTurns(input.rig, turned);
     MatrixXd C = input.covariance.empty() ? MatrixXd(MatrixXd::Zero(D.rows(), D.rows())) : toEigen(input.covariance);
     addGram(D.transpose(), 1., C);
     C.triangularView<Eigen::StrictlyUpper>() = C.transpose();
@@ -89,7 +89,7 @@ double searchWidth(const CheckInput& input, int first, int second, const Vec2d& 
     for (int i = 0; i < count; i++)
         all[i] = i;
     const ViewDerivatives view = differentiateView(input.rig, points, Vec3d(), Vec3d(), {{first, true, all}, {second, true, all}});
-    const MatrixXd D = byTurns(input.rig)*(degrees*DEGREE);
+    const MatrixXd D = byTurns(input.rig, {degrees, degrees});
     const MatrixXd C = input.covariance.empty() ? MatrixXd(MatrixXd::Zero(D.rows(), D.rows())) : toEigen(input.covariance);
     double width = 0.;
     for (int i = 0; i < count; i++)

@@ -9,9 +9,14 @@
 /* What may have become of a rig since its calibration, and how far from their curves matches then are. */
 namespace tools {
 
-/** The calibration's covariance, with every turn that the table of changes knows (of a camera, of a window), each by so many degrees
-as one standard deviation. */
-cv::Mat covarianceOfMoved(const CheckInput& input, double degrees);
+//! Standard deviations of what may have turned since, degrees.
+struct MayHaveTurned
+{
+    double cameras, windows;
+};
+
+/** The calibration's covariance, with every turn that the table of changes knows: of a camera about its own centre, of a window. */
+cv::Mat covarianceOfMoved(const CheckInput& input, const MayHaveTurned& turned);
 
 /** How far a match of two cameras may be from its epipolar curve, px: three standard deviations of what the calibration does not know,
 and the largest turn by so many degrees. @param depth z of the scene in the frame of camera 1 */

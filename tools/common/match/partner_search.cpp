@@ -108,6 +108,26 @@ struct Choice
     bool isClear() const { return partner >= 0 && best < CLEARLY_NEARER*CLEARLY_NEARER*second; }
 };
 
+//! Squared, of two rows of descriptors.
+class Distance
+{
+public:
+    Distance(const Features& first, const Features& second)
+        : first_(first.descriptors), second_(second.descriptors), areBits_(normOf(first) == NORM_HAMMING) {}
+
+    float operator()(int i, int j) const
+    {
+        if (!areBits_)
+            return hal::normL2Sqr_(first_.ptr<float>(i), second_.ptr<float>(j), first_.cols);
+        const float bits = (float)hal::normHamming(first_.ptr(i), second_.ptr(j), first_.cols);
+        return bits*bits;
+    }
+
+private:
+    const Mat first_, second_;
+    const bool areBits_;
+};
+
 //! z in the frame of a camera of all that camera 1 sees within a range of depths.
 Vec2d depthInCamera(const RigModel& rig, int c, const Vec2d& depth)
 {
@@ -144,12 +164,12 @@ FeaturePairs partnersNearCurves(const RigModel& rig, const CameraPair& pair, con
     computeRefractiveEpilines(first.pixels, 1, rig.cameras[pair.first], rig.cameras[pair.second], place.R, place.T, pair.depth, curves,
                               TOLERANCE);
     const Cells cells(second, rig.cameras[pair.second]->imageSize(), pair.search);
+    const Distance distanceOf(first, second);
     std::vector<Choice> forth(first.size()), back(second.size());
     for (int i = 0; i < first.size(); i++)
         for (int j : nearCurve(curves[i], second, cells, pair.search))
         {
-            const float distance = hal::normL2Sqr_(first.descriptors.ptr<float>(i), second.descriptors.ptr<float>(j),
-                                                   first.descriptors.cols);
+            const float distance = distanceOf(i, j);
             forth[i].offer(j, distance, second.pixels);
             back[j].offer(i, distance, first.pixels);
         }

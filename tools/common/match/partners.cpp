@@ -19,7 +19,7 @@ const double CLEARLY_NEARER = 0.8;      // than the second best, as Lowe has it
 std::vector<int> bestOf(const Features& from, const Features& to)
 {
     std::vector<std::vector<cv::DMatch>> matches;
-    cv::BFMatcher(cv::NORM_L2).knnMatch(from.descriptors, to.descriptors, matches, 2);
+    cv::BFMatcher(normOf(from)).knnMatch(from.descriptors, to.descriptors, matches, 2);
     std::vector<int> best(from.size(), -1);
     for (const auto& two : matches)
         if (two.size() == 2 && two[0].distance < CLEARLY_NEARER*two[1].distance)

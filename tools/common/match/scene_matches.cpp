@@ -4,10 +4,12 @@
 #include "match/scene_matches.hpp"
 #include "console/failure.hpp"
 #include "console/progress.hpp"
-#include "match/chains.hpp"
 #include "bundle/bundle_adjustment.hpp"
+#include "calibrate/parameter_columns.hpp"
+#include "match/chains.hpp"
 #include "match/moved_rig.hpp"
 #include "match/pair_mistakes.hpp"
+#include "measure/measurement.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -44,6 +46,15 @@ ScaledMatches matchesOfChains(const std::string& moment, const std::vector<Featu
         }
     }
     return result;
+}
+
+std::vector<Mat> imagesOf(const Moment& moment, const Calibration& calibration, std::vector<Frames>& cameras)
+{
+    std::vector<Mat> images(cameras.size());
+    for (int c = 0; c < (int)cameras.size(); c++)
+        if (moment.frames[c] >= 0)
+            images[c] = greyFrame(cameras[c], moment.frames[c], calibration, c);
+    return images;
 }
 
 std::vector<Moment> sharedMoments(const std::vector<Frames>& cameras)
@@ -100,6 +111,19 @@ std::string mistakeIn(const Calibration& calibration, std::vector<Frames>& camer
     return "";
 }
 
+//! Of some of the matches.
+double rmsOf(const std::vector<MatchResidual>& residuals, const std::vector<int>& some)
+{
+    double squares = 0.;
+    int count = 0;
+    for (int i : some)
+    {
+        squares += residuals[i].count > 0 ? residuals[i].squares : 0.;
+        count += residuals[i].count;
+    }
+    return count > 0 ? std::sqrt(squares/count) : NaN;
+}
+
 //! Matches by chance are anywhere within the search, right ones within a few standard deviations.
 double wrongOf(const SceneMatches& result)
 {
@@ -142,7 +166,7 @@ ScaledMatches SceneMatcher::matchesOf(const std::string& moment, const std::vect
     std::vector<Features> features(images.size());
     for (size_t c = 0; c < images.size(); c++)
         if (!images[c].empty())
-            features[c] = featuresOf(images[c], options_.features);
+            features[c] = featuresOf(images[c], options_.mostFeatures, options_.features);
     std::vector<PairMatches> matches;
     for (const CameraPair& pair : pairs_)
         matches.push_back({pair.first, pair.second, partnersNearCurves(input_.rig, pair, features[pair.first], features[pair.second])});
@@ -151,22 +175,23 @@ ScaledMatches SceneMatcher::matchesOf(const std::string& moment, const std::vect
 
 /* A part of the matches tells the rig as it is now, robustly, and the rig which of all others are right; these tell it again, each with
 the std of its scale. */
-std::vector<int> SceneMatcher::leaveOutWrong(ScaledMatches& scaled, MatchNoise& noise) const
+std::vector<int> SceneMatcher::leaveOutWrong(ScaledMatches& scaled, SceneMatches& result) const
 {
     const int ENOUGH = 400;
-    const BundleStart start{input_.rig, cv::refract::GLASS_FIX_NORMAL, covarianceOfMoved(input_, MAY_HAVE_TURNED), {}};
+    const BundleStart start{input_.rig, cv::refract::GLASS_FIX_NORMAL, covarianceOfMoved(input_, {MAY_HAVE_TURNED, MAY_HAVE_TURNED}), {}};
     const ScaledMatches some = scaled.only(spreadChoice(scaled, input_.rig, ENOUGH));
     RigModel rig = adjustBundle(start, some.matches, {}, true).fit.rig;
     std::vector<int> good;
     for (const bool isLast : {false, true})
     {
         const std::vector<MatchResidual> residuals = residualsOf(scaled, rig);
-        noise = noiseOf(residuals);
-        setStds(noise, scaled);
+        result.noise = noiseOf(residuals);
+        setStds(result.noise, scaled);
         good.clear();
         for (int i = 0; i < scaled.size(); i++)
-            if (residuals[i].isWithin(noise))
+            if (residuals[i].isWithin(result.noise))
                 good.push_back(i);
+        result.residual = rmsOf(residuals, good);
         if (!isLast)
             rig = adjustBundle(start, scaled.only(good).matches, {}, false).fit.rig;
     }
@@ -184,7 +209,7 @@ SceneMatches SceneMatcher::goodOf(const ScaledMatches& all) const
     if (result.chosen < FEWEST)
         throw Failure(format("only %d matches were found, fewer than %d: more texture, light or images are wanted, or --depth is not that "
                              "of the scene", result.chosen, FEWEST));
-    const std::vector<int> good = leaveOutWrong(chosen, result.noise);
+    const std::vector<int> good = leaveOutWrong(chosen, result);
     result.good = chosen.only(good);
     result.leftOut = result.chosen - (int)good.size();
     if (result.good.size() < FEWEST || !(result.good.matches.usualStd() > 0.))
@@ -204,11 +229,7 @@ SceneMatches matchScene(const Calibration& calibration, std::vector<Frames>& cam
         for (const Moment& moment : moments)
         {
             progress.at(moment.stem);
-            std::vector<Mat> images(cameras.size());
-            for (int c = 0; c < (int)cameras.size(); c++)
-                if (moment.frames[c] >= 0)
-                    images[c] = greyFrame(cameras[c], moment.frames[c], calibration, c);
-            all.add(matcher.matchesOf(moment.stem, images));
+            all.add(matcher.matchesOf(moment.stem, imagesOf(moment, calibration, cameras)));
             progress.step();
         }
     }
@@ -226,10 +247,46 @@ SceneMatches matchScene(const Calibration& calibration, std::vector<Frames>& cam
     result.moments = (int)moments.size();
     const bool isNoFit = result.good.matches.usualStd() > NO_FEATURE;
     const std::string mistake = isNoFit || result.leftOut > MANY*result.chosen ? mistakeIn(calibration, cameras, moments) : "";
-    if (isNoFit || !mistake.empty())
-        throw Failure(format("%d of %d matches contradict all others, which fit within %.2g px", result.leftOut, result.chosen,
-                             result.good.matches.usualStd()) + mistake);
+    if (isNoFit)
+        throw Failure(format("the %d matches miss each other's rays by %.2g px, however the rig may have moved, where features of sharp "
+                             "images are placed within %g px", result.good.size(), result.good.matches.usualStd(), NO_FEATURE)
+                      + (mistake.empty() ? ": are the images sharp, of this rig, and of one moment each?" : mistake));
+    if (!mistake.empty())
+        throw Failure(format("%d of %d matches contradict the others", result.leftOut, result.chosen) + mistake);
     return result;
+}
+
+std::vector<Mat> imagesOfMoment(const Calibration& calibration, std::vector<Frames>& cameras, const std::string& stem)
+{
+    for (const Moment& moment : sharedMoments(cameras))
+        if (moment.stem == stem)
+            return imagesOf(moment, calibration, cameras);
+    return std::vector<Mat>(cameras.size());
+}
+
+double residualWithoutWindows(const Calibration& calibration, const ScaledMatches& good)
+{
+    const double ANYHOW = 0.1;          // rad, and of the distances: as much a camera may be elsewhere
+    BundleStart start{modelOf(withoutWindows(calibration)), cv::refract::GLASS_FIX_NORMAL, Mat(), {}};
+    const int columns = columnCount(start.rig);
+    start.covariance = Mat::zeros(columns, columns, CV_64F);
+    for (int c = 1; c < (int)start.rig.cameras.size(); c++)
+        for (int i = 0; i < 6; i++)
+        {
+            const int at = extrinsicsColumn(start.rig, c) + i;
+            start.covariance.at<double>(at, at) = std::pow(ANYHOW*(i < 3 ? 1. : norm(start.rig.extrinsics[c].T)), 2);
+        }
+    std::vector<int> all;
+    for (int i = 0; i < good.size(); i++)
+        all.push_back(i);
+    try
+    {
+        return rmsOf(residualsOf(good, adjustBundle(start, good.matches, {}, false).fit.rig), all);
+    }
+    catch (const Failure&)
+    {
+        return NaN;
+    }
 }
 
 } // namespace tools

@@ -21,7 +21,8 @@ struct SceneOptions
 {
     cv::Vec2d depth;                //!< z of the scene in the frame of camera 1
     double search = 0.;             //!< px from the epipolar curves; 0: what the calibration does not know, and what may have moved
-    int count = 3000, features = 4000;      //!< matches at most; features of an image at most
+    int count = 3000, mostFeatures = 4000;      //!< matches at most; features of an image at most
+    std::string features = "SIFT";              //!< of featureNames()
 };
 
 //! By how much cameras and windows may have turned since the calibration, degrees.
@@ -30,6 +31,7 @@ const double MAY_HAVE_TURNED = 0.3;
 struct SceneMatches
 {
     ScaledMatches good;             //!< with stds
+    double residual = 0.;           //!< px, RMS of the good ones: what no point and no motion of the rig explains
     MatchNoise noise;
     double search = 0.;             //!< px, the largest of all pairs
     int moments = 0;                //!< of which two cameras have images
@@ -53,7 +55,7 @@ public:
     SceneMatches goodOf(const ScaledMatches& all) const;
 
 private:
-    std::vector<int> leaveOutWrong(ScaledMatches& scaled, MatchNoise& noise) const;
+    std::vector<int> leaveOutWrong(ScaledMatches& scaled, SceneMatches& result) const;
 
     CheckInput input_;
     SceneOptions options_;
@@ -62,6 +64,13 @@ private:
 
 //! Of all moments that two cameras have images of.
 SceneMatches matchScene(const Calibration& calibration, std::vector<Frames>& cameras, const SceneOptions& options, bool quiet);
+
+/** What all cameras saw at a moment, 8-bit grey; empty: nothing. @param stem of the moment */
+std::vector<cv::Mat> imagesOfMoment(const Calibration& calibration, std::vector<Frames>& cameras, const std::string& stem);
+
+/** The baseline: RMS of the residuals of the same matches, px, where windows are ignored and the cameras' places fitted to the matches.
+NaN: there is no such fit. */
+double residualWithoutWindows(const Calibration& calibration, const ScaledMatches& good);
 
 } // namespace tools
 
