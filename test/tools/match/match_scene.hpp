@@ -29,16 +29,18 @@ const cv::Size SIZE(640, 512);
 const double DEGREE = CV_PI/180, BOARD_SIGMA = 0.03;
 const cv::Vec2d DEPTH(450, 1150);
 
-inline Calibration nominalRig(double outerIndex)
+//! @param detail pixels of the sensor for one of 640x512
+inline Calibration nominalRig(double outerIndex, double detail)
 {
     Calibration rig;
     for (int c = 0; c < 2; c++)
     {
-        const Matx33d K(780 + 3*c, 0, 322 - 5*c, 0, 780 + 3*c, 254 + 4*c, 0, 0, 1);
+        const double f = detail*(780 + 3*c);
+        const Matx33d K(f, 0, detail*(322.5 - 5*c) - 0.5, 0, f, detail*(254.5 + 4*c) - 0.5, 0, 0, 1);
         const GlassWindow window(c ? Vec3d(0.12, -0.17, 0.97) : Vec3d(-0.21, 0.06, 0.97), 25, 1.517, 55 + 5*c, outerIndex);
         CameraCalibration camera;
         camera.camera = RefractiveCamera::create(K, std::vector<double>{ -0.2, 0.12, 0, 0, 0 }, window);
-        camera.camera->setImageSize(SIZE);
+        camera.camera->setImageSize(cv::Size(cvRound(detail*SIZE.width), cvRound(detail*SIZE.height)));
         camera.windowGiven = true;
         rig.add(camera, c ? transformOf(Vec3d(0.01, 0.21, -0.01), Vec3d(-160, 1.5, 18)) : RigidTransform());
     }
@@ -105,7 +107,7 @@ inline MatrixXd knownAfter(const RigModel& rig, scenes::Random& random)
 
 struct Rig
 {
-    explicit Rig(unsigned salt, double outerIndex = 1.) : random(salt), calibration(nominalRig(outerIndex))
+    explicit Rig(unsigned salt, double outerIndex = 1., double detail = 1.) : random(salt), calibration(nominalRig(outerIndex, detail))
     {
         const RigModel model = modelOf(calibration);
         const MatrixXd C = knownAfter(model, random);

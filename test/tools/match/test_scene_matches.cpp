@@ -119,6 +119,50 @@ TEST_CASE("A scene shows in one pair that a camera turned by 0.05 degrees, and i
     }
 }
 
+TEST_CASE("Three cameras have chains, and the one that turned is named", "[tools][match][check]")
+{
+    Calibration rig = nominalRig(1, 1);
+    const Matx33d K(790, 0, 318, 0, 790, 257, 0, 0, 1);
+    CameraCalibration third;
+    third.camera = RefractiveCamera::create(K, std::vector<double>{ -0.2, 0.12, 0, 0, 0 },
+                                            GlassWindow(Vec3d(0.1, 0.15, 0.97), 25, 1.517, 58, 1));
+    third.camera->setImageSize(SIZE);
+    rig.add(third, transformOf(Vec3d(-0.02, -0.2, 0.01), Vec3d(150, -3, 14)));
+    RigModel truth = modelOf(rig);
+    scenes::Random random(463);
+    const TexturedScene room = roomOf(random);
+    truth.extrinsics[2] = RigidTransform{ rotationMatrix(Vec3d(0.05*DEGREE, 0, 0)), Vec3d() }*truth.extrinsics[2];
+    const SceneMatcher matcher = matcherOf(rig);
+    const SceneMatches matches = matcher.goodOf(matcher.matchesOf("room", render(room, truth, usualExposure(), 3)));
+    const Matches& m = matches.good.matches;
+    int all = 0, wrong = 0;
+    for (int c : { 1, 2 })
+    {
+        RigModel pair;
+        pair.add(truth.cameras[0]);
+        pair.add(truth.cameras[c], truth.extrinsics[c]);
+        const std::vector<Point2d> partners = truePartners(room, pair, m.pixels[0]);
+        for (int i = 0; i < matches.good.size(); i++)
+            if (m.isSeen(0, i) && m.isSeen(c, i))
+            {
+                all += m.seenBy(i) == 3;
+                wrong += !(cv::norm(m.pixels[c][i] - partners[i]) < 3);
+            }
+    }
+    CHECK(all > 2*200);
+    CHECK(wrong < 0.005*matches.good.size());
+    CheckInput input = checkInputOf(rig, "", 0.05);
+    input.sigma = m.usualStd();
+    const CheckResult result = checkScene(input, observationsOf(input.rig, m), 0.001, "mm");
+    INFO(causesIn(result));
+    CHECK(result.changed);
+    REQUIRE(!result.changes.empty());
+    CHECK(result.changes[0].name == "R of camera 3 (turned about its own centre) changed by");
+    const cv::Vec2d aboutX = result.changes[0].values[0].aboutAxes[0];
+    CHECK(std::abs(aboutX[0] - 0.05) < 4*aboutX[1]);
+    CHECK(aboutX[1] < 0.005);
+}
+
 // TRIALS=50 refract_tools_tests "[scene-reach]": what checks by scenes reach, pairs of 640x512.
 TEST_CASE("What checks by a scene reach", "[tools][.monte-carlo][scene-reach]")
 {
