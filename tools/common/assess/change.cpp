@@ -266,7 +266,7 @@ private:
         add("focal length and principal point" + of + " changed by", c, {percent(WIDE), pixels},
             [lensBy](RigModel& rig, const VectorXd& d) { lensBy(1. + d[0], d[1], d[2])(rig); });
         for (size_t row = rows.size() - 3; row < rows.size(); row++)
-            rows[row].isOfLens = true;
+            rows[row].isUnlikely = true;
     }
 
     void addPlace(int c)
@@ -305,6 +305,7 @@ private:
                 else
                     rig.extrinsics[c].R = rotationMatrix(first3(d))*rig.extrinsics[c].R; });
         rows.back().isTurn = isOfFirst;
+        rows.back().isUnlikely = !isOfFirst;        // a camera that turns about no centre
         rows.back().axes = {"x", "y", "z"};
     }
 

@@ -31,7 +31,7 @@ struct Change
     bool isShift = false;       //!< of the centre of its dome or tube
     bool isOfAnotherPane = false;       //!< thickness, index, wedge: one that stays where it is keeps them
     bool isTurn = false;        //!< of a camera about its own centre
-    bool isOfLens = false;      //!< or the sensor: its mount, or a window's, moves more easily
+    bool isUnlikely = false;    //!< beside a camera or a window that moved in its mount: of a lens, or no motion at all
     //! What may also come slowly, of heat, load or age, has a control chart (history/): its name; empty: none.
     std::string chart = "";
     std::vector<std::string> axes = {};     //!< of its parameters, in that chart and in sentences

@@ -361,12 +361,12 @@ private:
     void tellWhatCanHappenFirst()
     {
         const double AS_LIKELY = 10.;           // difference of two chi^2
-        const auto isOfLens = [](const Candidate& c) { return c.tested && c.tested->change->isOfLens; };
-        if (isScene_ && !named_.empty() && isOfLens(named_[0]))
+        const auto isUnlikely = [](const Candidate& c) { return c.tested && c.tested->change->isUnlikely; };
+        if (isScene_ && !named_.empty() && isUnlikely(named_[0]))
         {
             const double most = named_[0].chiSquare + AS_LIKELY;
             const auto other = std::find_if(named_.begin(), named_.end(), [&](const Candidate& c) {
-                return !isOfLens(c) && c.chiSquare < most; });
+                return !isUnlikely(c) && c.chiSquare < most; });
             if (other != named_.end())
                 std::rotate(named_.begin(), other, other + 1);
         }
