@@ -248,6 +248,7 @@ TEST_CASE("The table of what checks by a scene reach", "[tools][.monte-carlo][sc
             for (int trial = 0; trial < trials; trial++)
                 check(happened, outerIndex, trial, noise, reached);
             reached.print(happened);
+            std::cout << std::flush;
             if (happened.name.empty())
                 CHECK(reached.changed <= 2 + 3*trials*FALSE_ALARM);
             else
