@@ -92,10 +92,10 @@ cv::Mat readRaw(const std::string& path, const cv::refract::RefractiveCamera& ca
     return image;
 }
 
-std::vector<Point2d> detectIn(const cv::Mat& image, const std::string& path, const Target& target)
+std::vector<Point2d> requireIn(const cv::Mat& image, const std::string& path, const Target& target)
 {
     cv::Size other;
-    const std::vector<Point2d> points = target.detect(image, &other);
+    const std::vector<Point2d> points = detectIn(image, path, target, &other);
     if (!other.empty())
         throw Failure(otherTargetText("'" + path + "'", target, other));
     if (points.empty())
@@ -161,8 +161,8 @@ int refract_epilines_main(int argc, char** argv)
         if (options.target.given())
         {
             const Target target(options.target);
-            points = detectIn(image1, options.image1, target);
-            partners = target.alignWith(points, detectIn(image2, options.image2, target));
+            points = requireIn(image1, options.image1, target);
+            partners = target.alignWith(points, requireIn(image2, options.image2, target));
             contradiction = contradictionOf(rig, target, points, partners);
         }
         else

@@ -48,25 +48,32 @@ Point2d through(const Matx33d& H, const Point2d& p)
     return Point2d(h[0]/h[2], h[1]/h[2]);
 }
 
-//! @param isDark at a place of the board
-template <typename Dark>
-Mat picture(const Matx33d& H, const Dark& isDark)
+/** @param toBoard the place of the board that a pixel shows
+@param isDark at a place of the board */
+template <typename ToBoard, typename Dark>
+Mat pictureThrough(const ToBoard& toBoard, const Dark& isDark)
 {
     const int FINE = 4;
     scenes::Random random(4501);
-    const Matx33d back = H.inv();
     Mat image(IMAGE, CV_32F);
     for (int y = 0; y < image.rows; y++)
         for (int x = 0; x < image.cols; x++)
         {
             int dark = 0;
             for (int k = 0; k < FINE*FINE; k++)
-                dark += isDark(through(back, Point2d(x + (k % FINE + 0.5)/FINE - 0.5, y + (k/FINE + 0.5)/FINE - 0.5)));
+                dark += isDark(toBoard(Point2d(x + (k % FINE + 0.5)/FINE - 0.5, y + (k/FINE + 0.5)/FINE - 0.5)));
             image.at<float>(y, x) = (float)(200 - 170.*dark/(FINE*FINE) + random.normal(1.));
         }
     cv::GaussianBlur(image, image, Size(), 0.7);
     image.convertTo(image, CV_8U);
     return image;
+}
+
+template <typename Dark>
+Mat picture(const Matx33d& H, const Dark& isDark)
+{
+    const Matx33d back = H.inv();
+    return pictureThrough([&](const Point2d& p) { return through(back, p); }, isDark);
 }
 
 struct Dots
@@ -120,16 +127,31 @@ std::string explained(const Mat& image, const TargetOptions& options)
     return text;
 }
 
-Mat aprilPicture(Size tags, const Matx33d& H, bool mirrored = false)
+const int FINE_TAG = 200;           // pixels of a tag that is drawn
+const double SPACING = 0.3;
+
+struct DrawnTags
 {
-    const int PIXELS = 200;
-    const double spacing = 0.3;
-    const Mat drawn = drawAprilGrid(tags, spacing, PIXELS);
-    return picture(H, [&](const Point2d& p) {
-        const cv::Point at(cvFloor((p.x + spacing)*PIXELS), cvFloor((p.y + spacing)*PIXELS));
-        const cv::Point place = mirrored ? cv::Point(at.x, drawn.rows - 1 - at.y) : at;
-        return cv::Rect(cv::Point(), drawn.size()).contains(place) && drawn.at<uchar>(place) == 0;
-    });
+    Mat drawn;
+    bool operator()(const Point2d& p) const
+    {
+        const cv::Point at(cvFloor((p.x + SPACING)*FINE_TAG), cvFloor((p.y + SPACING)*FINE_TAG));
+        return cv::Rect(cv::Point(), drawn.size()).contains(at) && drawn.at<uchar>(at) == 0;
+    }
+};
+
+Mat aprilPicture(Size tags, const Matx33d& H) { return picture(H, DrawnTags{drawAprilGrid(tags, SPACING, FINE_TAG)}); }
+
+//! Largest error of the corners of tags that were seen.
+template <typename ToImage>
+double worstCorner(const std::vector<Point2d>& found, const Target& target, const ToImage& toImage)
+{
+    double most = 0;
+    for (int i = 0; i < target.count(); i++)
+        if (seen(found[i]))
+            most = std::max(most, cv::norm(found[i] - toImage(Point2d(target.objectPoints()[i].x, target.objectPoints()[i].y)
+                                                              /target.square())));
+    return most;
 }
 
 } // namespace
@@ -204,9 +226,8 @@ TEST_CASE("An AprilGrid is found, whatever its turn, and tags of which a part is
             Mat image = aprilPicture(Size(5, 4), H);
             std::vector<Point2d> found = target.detect(image);
             REQUIRE((int)found.size() == target.count());
-            double most = 0;
-            for (int i = 0; i < target.count(); i++)
-                most = std::max(most, cv::norm(found[i] - through(H, Point2d(target.objectPoints()[i].x, target.objectPoints()[i].y)/30)));
+            CHECK(std::all_of(found.begin(), found.end(), seen));
+            const double most = worstCorner(found, target, [&](const Point2d& p) { return through(H, p); });
             std::cout << "[numbers] AprilGrid turned by " << degrees << ", tilt " << tilt << ": worst corner " << most << " px off\n";
             CHECK(most < 0.1);
             // A hand over the first tag of the second row.
@@ -226,7 +247,49 @@ TEST_CASE("Tags in another order than Kalibr's are refused by name", "[target][a
     for (int row = 0; row < 4; row++)           // the first tag at the upper left
         drawn.rowRange(18 + (3 - row)*78, 18 + (3 - row)*78 + 60).copyTo(other.rowRange(18 + row*78, 18 + row*78 + 60));
     cv::copyMakeBorder(other, other, 30, 30, 30, 30, cv::BORDER_CONSTANT, 255);
-    CHECK_THROWS_WITH(Target(board("aprilgrid", "5x4")).detect(other), Catch::Contains("not where Kalibr puts them"));
+    CHECK_THROWS_WITH(detectIn(other, "a.png", Target(board("aprilgrid", "5x4"))),
+                      Catch::StartsWith("'a.png': ") && Catch::Contains("not where Kalibr puts them"));
+}
+
+TEST_CASE("An AprilGrid that fills the field of a fisheye is where Kalibr puts it", "[target][aprilgrid]")
+{
+    const double FOCAL = 390, HALF = 50*CV_PI/180;      // to the board's corner, angles alike
+    const Target target(board("aprilgrid", "6x6"));
+    const Point2d middle(3.75, 3.75), centre(480, 360);     // of 6 tags and 5 gaps; of the image
+    const double away = cv::norm(middle)/std::tan(HALF);
+    const auto toImage = [&](const Point2d& p) {
+        const double r = cv::norm(p - middle);
+        return centre + FOCAL*(r > 0 ? std::atan2(r, away)/r : 1/away)*(p - middle);
+    };
+    const auto toBoard = [&](const Point2d& p) {
+        const double r = cv::norm(p - centre), angle = std::min(r/FOCAL, 1.5);
+        return middle + (r > 0 ? away*std::tan(angle)/r : away/FOCAL)*(p - centre);
+    };
+    const std::vector<Point2d> found = target.detect(pictureThrough(toBoard, DrawnTags{drawAprilGrid(Size(6, 6), SPACING, FINE_TAG)}));
+    REQUIRE((int)found.size() == target.count());
+    const auto seenCount = std::count_if(found.begin(), found.end(), seen);
+    const double most = worstCorner(found, target, toImage);
+    std::cout << "[numbers] AprilGrid through a fisheye: " << seenCount << " of 144 corners, worst " << most << " px off\n";
+    CHECK(seenCount > 130);
+    CHECK(most < 0.2);
+}
+
+TEST_CASE("One tag where it does not belong is left out, the others stay", "[target][aprilgrid]")
+{
+    const int PITCH = 260, FIRST = 60;
+    const Target target(board("aprilgrid", "5x4"));
+    const Matx33d H = boardToImage(90, 10, 3e-4, Point2d(3.1, 2.5));
+    Mat drawn = drawAprilGrid(Size(5, 4), SPACING, FINE_TAG);
+    const auto tagAt = [&](int column, int row) {
+        return drawn(cv::Rect(FIRST + column*PITCH, FIRST + row*PITCH, FINE_TAG, FINE_TAG)); };
+    tagAt(2, 1).copyTo(tagAt(0, 3));
+    tagAt(2, 1).setTo(255);
+    const std::vector<Point2d> found = target.detect(picture(H, DrawnTags{drawn}));
+    REQUIRE((int)found.size() == target.count());
+    CHECK(std::count_if(found.begin(), found.end(), seen) == target.count() - 8);
+    CHECK(!seen(found[2*10 + 4]));
+    CHECK(!seen(found[6*10]));
+    CHECK(worstCorner(found, target, [&](const Point2d& p) { return through(H, p); }) < 0.1);
 }
 
 TEST_CASE("A tag is that of Kalibr's family: its bits, in its order", "[target][aprilgrid]")

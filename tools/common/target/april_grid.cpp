@@ -79,22 +79,41 @@ double smallestSide(const Tags& tags)
     return side;
 }
 
-//! The board to the image near a tag, from those next to it. Empty: they do not tell.
-Mat homographyNear(const Tags& found, Size tags, const std::vector<Vec2d>& grid, int tag)
+//! Numbers of the tags that were found nearest to one on the board, itself not among them.
+std::vector<int> tagsBeside(const Tags& found, Size tags, const std::vector<Vec2d>& grid, int tag, size_t most)
 {
-    const size_t NEIGHBOURS = 4;
     std::vector<std::pair<double, int>> near;
     for (const auto& other : found)
-        near.push_back({cv::norm(grid[pointOf(tags, other.first, 0)] - grid[pointOf(tags, tag, 0)]), other.first});
+        if (other.first != tag)
+            near.push_back({cv::norm(grid[pointOf(tags, other.first, 0)] - grid[pointOf(tags, tag, 0)]), other.first});
     std::sort(near.begin(), near.end());
+    std::vector<int> numbers;
+    for (size_t i = 0; i < std::min(near.size(), most); i++)
+        numbers.push_back(near[i].second);
+    return numbers;
+}
+
+std::vector<Point2f> onBoard(Size tags, const std::vector<Vec2d>& grid, int tag)
+{
+    std::vector<Point2f> board;
+    for (int c = 0; c < CORNERS; c++)
+        board.push_back(Point2d(grid[pointOf(tags, tag, c)]));
+    return board;
+}
+
+const double WRONG = 0.3;           // sides of a tag: what is so far off is elsewhere
+
+//! The image to the board as most corners of some tags say. Empty: they do not tell.
+Mat homographyOf(const Tags& found, Size tags, const std::vector<Vec2d>& grid, const std::vector<int>& which)
+{
     std::vector<Point2f> board, pixels;
-    for (size_t i = 0; i < std::min(near.size(), NEIGHBOURS); i++)
-        for (int c = 0; c < CORNERS; c++)
-        {
-            board.push_back(Point2d(grid[pointOf(tags, near[i].second, c)]));
-            pixels.push_back(found.at(near[i].second)[c]);
-        }
-    return cv::findHomography(board, pixels);
+    for (int tag : which)
+    {
+        const std::vector<Point2f> corners = onBoard(tags, grid, tag);
+        board.insert(board.end(), corners.begin(), corners.end());
+        pixels.insert(pixels.end(), found.at(tag).begin(), found.at(tag).end());
+    }
+    return cv::findHomography(pixels, board, cv::RANSAC, WRONG);
 }
 
 //! Whether the image has the tag's modules where it must be.
@@ -126,39 +145,51 @@ bool isSeen(const Mat& grey, int tag, const std::vector<Point2f>& corners)
 //! Tags that the detector did not read, where the others say that they are.
 void completeTags(const Mat& grey, Size tags, const std::vector<Vec2d>& grid, Tags& found)
 {
+    const size_t NEIGHBOURS = 4;
     const Tags read = found;
     for (int tag = 0; tag < tags.area(); tag++)
     {
-        const Mat H = read.count(tag) ? Mat() : homographyNear(read, tags, grid, tag);
+        const Mat H = read.count(tag) ? Mat() : homographyOf(read, tags, grid, tagsBeside(read, tags, grid, tag, NEIGHBOURS));
         if (H.empty())
             continue;
-        std::vector<Point2f> board, pixels;
-        for (int c = 0; c < CORNERS; c++)
-            board.push_back(Point2d(grid[pointOf(tags, tag, c)]));
-        cv::perspectiveTransform(board, pixels, H);
+        std::vector<Point2f> pixels;
+        cv::perspectiveTransform(onBoard(tags, grid, tag), pixels, H.inv());
         if (isSeen(grey, tag, pixels))
             found[tag] = pixels;
     }
 }
 
-//! What a lens bends is far less than a tag.
-void requireLayout(const Tags& found, Size tags, const std::vector<Vec2d>& grid)
+/** Whether a tag is where most of those beside it say. A lens may bend a board by half a tag, but hardly what is beside one. Of tags in
+another order a row may agree with itself: so most of the tags beside it have to agree with each other, too. */
+bool isInPlace(const Tags& found, Size tags, const std::vector<Vec2d>& grid, int tag)
 {
-    const double WRONG = 0.3;           // sides of a tag
-    std::vector<Point2f> board, pixels, back;
+    const size_t NEIGHBOURS = 8;
+    const std::vector<int> beside = tagsBeside(found, tags, grid, tag, NEIGHBOURS);
+    const Mat H = homographyOf(found, tags, grid, beside);
+    if (H.empty())
+        return false;
+    const auto agrees = [&](int other) {
+        std::vector<Point2f> back;
+        cv::perspectiveTransform(found.at(other), back, H);
+        return cv::norm(back, onBoard(tags, grid, other), cv::NORM_L2)/std::sqrt((double)CORNERS) < WRONG;
+    };
+    return agrees(tag) && 2*std::count_if(beside.begin(), beside.end(), agrees) > (long)beside.size();
+}
+
+//! Without tags that are none, or of another board; of a few none is left if they disagree, as nothing tells which is wrong.
+Tags inPlace(const Tags& found, Size tags, const std::vector<Vec2d>& grid)
+{
+    const size_t TELLING = 4;           // so many that disagree are no false tags
+    Tags left;
     for (const auto& tag : found)
-        for (int c = 0; c < CORNERS; c++)
-        {
-            board.push_back(Point2d(grid[pointOf(tags, tag.first, c)]));
-            pixels.push_back(tag.second[c]);
-        }
-    const Mat H = cv::findHomography(pixels, board);
-    if (!H.empty())
-        cv::perspectiveTransform(pixels, back, H);
-    if (H.empty() || cv::norm(back, board, cv::NORM_L2)/std::sqrt((double)board.size()) > WRONG)
+        if (isInPlace(found, tags, grid, tag.first))
+            left.insert(tag);
+    const size_t wrong = found.size() - left.size();
+    if (2*wrong > found.size() && wrong >= TELLING)
         throw Failure("the tags of this board are not where Kalibr puts them: tag 0 at the lower left, numbers to the right and then up; "
                       "are --size=" + std::to_string(tags.width) + "x" + std::to_string(tags.height)
                       + " (tags) and --tag-spacing those of the board?");
+    return left;
 }
 
 } // namespace
@@ -208,6 +239,7 @@ Mat drawAprilGrid(Size tags, double spacing, int pixelsPerTag)
 
 std::vector<Point2d> detectAprilGrid(const Mat& grey, Size tags, double spacing)
 {
+    const size_t LEAST = 2;
     const double REACH = 0.8/MODULES*BORDER;        // what is nearest to a corner inside of a tag are its bits
     Tags found;
     for (const double scale : {1., 2.})             // the squares join tags; in a larger image small ones come apart
@@ -215,10 +247,12 @@ std::vector<Point2d> detectAprilGrid(const Mat& grey, Size tags, double spacing)
             addTags(grey, scale, found);
     for (auto tag = found.begin(); tag != found.end(); )
         tag = tag->first < tags.area() ? std::next(tag) : found.erase(tag);
-    if (found.size() < 2)
+    if (found.size() < LEAST)
         return {};
     const std::vector<Vec2d> grid = aprilGridOf(tags, spacing);
-    requireLayout(found, tags, grid);
+    found = inPlace(found, tags, grid);
+    if (found.size() < LEAST)
+        return {};
     completeTags(grey, tags, grid, found);
     std::vector<Point2f> corners;
     std::vector<int> places;

@@ -157,6 +157,19 @@ std::string otherDots(const std::vector<Without>& images, const Target& target, 
 
 } // namespace
 
+std::vector<cv::Point2d> detectIn(const cv::Mat& grey, const std::string& path, const Target& target, cv::Size* other,
+                                  Target::Effort effort)
+{
+    try
+    {
+        return target.detect(grey, other, effort);
+    }
+    catch (const Failure& e)
+    {
+        throw Failure("'" + path + "': " + e.what());
+    }
+}
+
 cv::Size otherChessboard(const std::vector<Without>& images)
 {
     const cv::Size other = images[0].chessboard;

@@ -17,6 +17,10 @@ struct Without
     cv::Size chessboard;        //!< the largest that is seen in it, the longer side first; empty: none
 };
 
+//! As Target::detect(); a Failure names the image.
+std::vector<cv::Point2d> detectIn(const cv::Mat& grey, const std::string& path, const Target& target, cv::Size* other = nullptr,
+                                  Target::Effort effort = Target::THOROUGH);
+
 //! The size of the chessboard that all these images show in place of the one that was asked for; empty if they do not agree.
 cv::Size otherChessboard(const std::vector<Without>& images);
 

@@ -70,7 +70,7 @@ void TargetSearch::search(const std::vector<int>& which, Target::Effort effort, 
     forEach(which, [&](int i) {
         progress.at(paths_[i]);
         Result& result = results_[i];
-        result.points = target_.detect(readGrey(paths_[i], channel_), &result.other, effort);
+        result.points = detectIn(readGrey(paths_[i], channel_), paths_[i], target_, &result.other, effort);
         result.done = effort == Target::THOROUGH || !result.points.empty();
         if (result.done)
             progress.step();
