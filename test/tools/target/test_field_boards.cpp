@@ -292,6 +292,17 @@ TEST_CASE("One tag where it does not belong is left out, the others stay", "[tar
     CHECK(worstCorner(found, target, [&](const Point2d& p) { return through(H, p); }) < 0.1);
 }
 
+TEST_CASE("An AprilGrid in place of another board is called one, whatever its size", "[target][aprilgrid][missing]")
+{
+    const Mat image = aprilPicture(Size(6, 6), boardToImage(75, 5, 2e-4, Point2d(3.75, 3.75)));
+    for (const TargetOptions& options : {board("chessboard", "9x6"), board("circles", "6x6")})
+    {
+        const std::string text = explained(image, options);
+        INFO(text);
+        CHECK(text.find("--pattern=aprilgrid (whose --size counts tags)") != std::string::npos);
+    }
+}
+
 TEST_CASE("A tag is that of Kalibr's family: its bits, in its order", "[target][aprilgrid]")
 {
     const uint64_t FIRST = 0xd5d628584ull;      // 36h11, tag 0: the upper left bit is the highest, 1 is light

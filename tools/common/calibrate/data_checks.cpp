@@ -172,7 +172,7 @@ void noticeNotFound(const RigImages& sets, std::vector<std::string>& notices)
             const size_t found = set.images.size(), count = found + set.withoutTarget.size();
             if (2*found < count)
                 notices.push_back(format("the target was found in only %zu of %zu %s%s: check --pattern and --size (count the "
-                                         "inner corners or dots), light and focus", found, count,
+                                         "inner corners, dots or tags), light and focus", found, count,
                                          through ? "images through the window" : "direct images",
                                          c ? format(" of camera %d", c + 1).c_str() : ""));
         }

@@ -55,6 +55,19 @@ cv::Size usualSize(const std::vector<Without>& images)
     return cv::Size();
 }
 
+//! A board whose tags are not those of the size is one of another size.
+bool isSeenIn(const cv::Mat& grey, const Target& target)
+{
+    try
+    {
+        return !target.detect(grey, nullptr, Target::HURRIED).empty();
+    }
+    catch (const Failure&)
+    {
+        return true;
+    }
+}
+
 //! In at least one of the first images.
 bool isFound(const Target& target, const std::vector<Without>& images, Channel channel)
 {
@@ -62,7 +75,7 @@ bool isFound(const Target& target, const std::vector<Without>& images, Channel c
     std::vector<char> found(count);
     cv::parallel_for_(cv::Range(0, (int)count), [&](const cv::Range& range) {
         for (int i = range.start; i < range.end; i++)
-            found[i] = !target.detect(readGrey(images[i].path, channel), nullptr, Target::HURRIED).empty();
+            found[i] = isSeenIn(readGrey(images[i].path, channel), target);
     }, (double)count);
     return std::count(found.begin(), found.end(), true) > 0;
 }
@@ -110,7 +123,7 @@ std::string partText(const std::vector<Without>& images, const Target& target, C
            + " inner corners): " + partAdvice(images, target, channel);
 }
 
-//! A target of another kind, with the same number of points; empty: none is found.
+//! A target of another kind, with the same number of points, or an AprilGrid; empty: none is found.
 std::string otherPattern(const std::vector<Without>& images, const Target& target, Channel channel)
 {
     static const struct { Target::Pattern pattern; const char *name, *dictionary; } OTHERS[] = {
@@ -125,7 +138,8 @@ std::string otherPattern(const std::vector<Without>& images, const Target& targe
         const bool same = other.pattern == target.pattern() && other.pattern != Target::CHARUCO;
         if (!same && tried && isFound(*tried, one, channel))
             return std::string("--pattern=") + other.name
-                   + (other.pattern == Target::CHARUCO ? std::string(" --dictionary=") + other.dictionary : "");
+                   + (other.pattern == Target::CHARUCO ? std::string(" --dictionary=") + other.dictionary : "")
+                   + (other.pattern == Target::APRILGRID ? " (whose --size counts tags)" : "");
     }
     return "";
 }
@@ -215,7 +229,7 @@ std::string explainMissing(const std::vector<Without>& images, const std::string
         return "the target in " + quotedNames(first) + " looks like a chessboard of " + sizeText(chessboard)
                + " inner corners: give --pattern=chessboard --size=" + sizeText(chessboard);
     return "the target was not found in " + looked + ": check --pattern and --size=" + target.sizeText()
-           + " (inner corners or dots), light and focus";
+           + " (inner corners, dots or tags), light and focus";
 }
 
 std::string otherTargetText(const std::string& where, const Target& target, cv::Size other)
