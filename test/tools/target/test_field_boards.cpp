@@ -213,6 +213,20 @@ TEST_CASE("A plate whose outer row is covered is no smaller plate with a free ch
     CHECK(explained(image, board("circles", "9x7")).find("keep its outer rows") != std::string::npos);
 }
 
+TEST_CASE("The size of an asymmetric plate is told, however it is turned", "[target][circles][missing]")
+{
+    for (const Size& size : {Size(4, 11), Size(5, 9)})
+        for (double degrees : {4., 50., 94., 140., 184., 230., 274., 320.})
+        {
+            CAPTURE(size, degrees);
+            const Dots plate = {size, true, {}, {}};
+            const Matx33d H = boardToImage(40, degrees, 2e-4, Point2d(size.width, 0.5*size.height));
+            bool asymmetric = false;
+            CHECK(dotGridIn(picture(H, [&](const Point2d& p) { return plate.isDark(p); }), asymmetric) == size);
+            CHECK(asymmetric);
+        }
+}
+
 TEST_CASE("An AprilGrid is found, whatever its turn, and tags of which a part is hidden are not", "[target][aprilgrid]")
 {
     const Target target(board("aprilgrid", "5x4"));

@@ -124,6 +124,15 @@ DotLattice changed(DotLattice lattice, const Change& change)
     return normalised(lattice);
 }
 
+/** The columns and rows of an asymmetric grid. Its rows are shifted by one against each other, so that a whole one is an even number of
+places wide: where it is high by an even number, it lies on its side. */
+Size sizeOfAsymmetric(Size places)
+{
+    if (places.width % 2 == 1 && places.height % 2 == 0)
+        std::swap(places.width, places.height);
+    return Size((places.width + 1)/2, places.height);
+}
+
 } // namespace
 
 DotLattice findLattice(const std::vector<KeyPoint>& dots)
@@ -216,7 +225,7 @@ Size dotGridIn(const cv::Mat& grey, bool& asymmetric)
         const DotLattice oblique = asAsymmetric(lattice);
         asymmetric = 2*oblique.filled() > lattice.filled();
         const Size straight(std::max(lattice.size.width, lattice.size.height), std::min(lattice.size.width, lattice.size.height));
-        const Size size = asymmetric ? Size((oblique.size.width + 1)/2, oblique.size.height) : straight;
+        const Size size = asymmetric ? sizeOfAsymmetric(oblique.size) : straight;
         if (lattice.places.size() >= FEWEST && std::min(size.width, size.height) > 1
             && (double)lattice.places.size() >= LEAST*size.area())
             return size;
