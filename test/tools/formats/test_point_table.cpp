@@ -74,6 +74,24 @@ TEST_CASE("Tables of points that cannot be read are refused in a sentence", "[fo
     CHECK_THAT(failure(f, "a,b\n1,2\n"), Catch::Contains("there is no column 'id'"));
 }
 
+TEST_CASE("A camera is called as its table calls it, and none is left out without a word", "[foreign]")
+{
+    TemporaryFolder f;
+    const auto tracks = [&](const std::string& text) { return [&f, text] { read(f, text, {"top", {}}); }; };
+    CHECK_THROWS_WITH(tracks("pt1_cam2_X,pt1_cam2_Y,pt01_cam2_X,pt01_cam2_Y\n1,2,3,4\n")(), Catch::Contains("camera 2 saw the point 1"));
+    CHECK_THROWS_WITH(tracks("pt1_cam1_X,pt1_cam1_Y\n1,\n")(), Catch::Contains("pt1_cam1_X and pt1_cam1_Y must both be numbers"));
+    CHECK_THROWS_WITH(tracks("pt1_cam1_X,b\n1,2\n")(), Catch::Contains("there is no column 'pt1_cam1_Y'"));
+    CHECK_THROWS_WITH(tracks("pt1_cam1_X,pt1_cam1_Y\n1,inf\n")(), Catch::Contains("line 2: 'inf' is no number"));
+    // 2^64 + 1 is no other point than 1.
+    CHECK(read(f, "pt18446744073709551617_cam1_X,pt1_cam1_X,pt1_cam1_Y\n5,1,2\n", {"top", {}}).rows().size() == 1);
+    saved(f, "t1.csv", "2\n0 1 2 3 4 5 6 0\n1 1 2 3 4 5 6 0\n");
+    CHECK_THAT(failure(f, "", "t%d.csv"), Catch::Contains("line 3: camera 1 saw the point 0"));
+    saved(f, "t1.csv", "1\n0 1 2 3 4 5 6 0\n\n \n");
+    CHECK(failure(f, "", "t%d.csv") == "read");
+    saved(f, "t3.csv", "1\n0 1 2 3 4 5 6 0\n");
+    CHECK_THAT(failure(f, "", "t%d.csv"), Catch::Contains("t3.csv', but no '") && Catch::Contains("t2.csv'"));
+}
+
 TEST_CASE("Tracks of DLTdv and Argus count from 1, and from where it is said", "[foreign]")
 {
     TemporaryFolder f;

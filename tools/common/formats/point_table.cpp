@@ -8,7 +8,9 @@
 #include "console/options.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <map>
 #include <sstream>
@@ -29,8 +31,8 @@ struct Observation
     int line;
 };
 
-//! One row a point.
-CsvTable tableOf(const std::string& path, const std::vector<Observation>& all)
+//! One row a point. @param first what the file calls the first camera
+CsvTable tableOf(const std::string& path, const std::vector<Observation>& all, size_t first)
 {
     std::vector<std::string> names = {"image", "id"};
     size_t cameras = 0;
@@ -52,8 +54,8 @@ CsvTable tableOf(const std::string& path, const std::vector<Observation>& all)
             seenBy.push_back(std::vector<char>(cameras, 0));
         }
         if (seenBy[place->second][o.camera]++)
-            throw Failure("'" + path + "' line " + std::to_string(o.line) + ": camera " + std::to_string(o.camera) + " saw the point "
-                          + o.point + " of frame " + o.frame + " in an earlier line already");
+            throw Failure("'" + path + "' line " + std::to_string(o.line) + ": camera " + std::to_string(first + o.camera)
+                          + " saw the point " + o.point + " of frame " + o.frame + " in an earlier line already");
         rows[place->second].cells[2 + 2*o.camera] = o.u;
         rows[place->second].cells[3 + 2*o.camera] = o.v;
     }
@@ -85,17 +87,26 @@ CsvTable readLongForm(const std::string& path, const LongForm& form)
     for (const CsvTable::Row& row : table.rows())
         all.push_back({table.text(row, form.frame), table.text(row, form.point), cameraOf(table, row, form),
                        table.textOrNone(row, form.u), table.textOrNone(row, form.v), row.line});
-    return tableOf(path, all);
+    return tableOf(path, all, 0);
+}
+
+//! Takes a word and the number after it from the front of a text; false: it begins with something else.
+bool takeNumbered(const std::string& word, const char*& at, const char* end, size_t& number)
+{
+    if ((size_t)(end - at) < word.size() || word.compare(0, word.size(), at, word.size()) != 0)
+        return false;
+    const auto read = std::from_chars(at + word.size(), end, number);
+    at = read.ptr;
+    return read.ec == std::errc();
 }
 
 //! pt3_cam1_X: 3 and 1; false: it is another name.
-bool isTrack(const std::string& name, int& point, size_t& camera)
+bool isTrack(const std::string& name, size_t& point, size_t& camera)
 {
     size_t number = 0;
-    char axis = 0;
-    int end = 0;
-    const bool is = std::sscanf(name.c_str(), "pt%d_cam%zu_%c%n", &point, &number, &axis, &end) == 3 && end == (int)name.size()
-        && std::strchr("Xx", axis) && point >= 0 && number >= 1 && number <= MOST_CAMERAS;
+    const char *at = name.data(), *const end = at + name.size();
+    const bool is = takeNumbered("pt", at, end, point) && takeNumbered("_cam", at, end, number) && number >= 1 && number <= MOST_CAMERAS
+        && (std::string(at, end) == "_X" || std::string(at, end) == "_x");
     camera = number - 1;
     return is;
 }
@@ -112,24 +123,57 @@ double heightOf(const std::string& path, const PixelOrigin& origin, size_t camer
     return origin.yFrom == "bottom" ? origin.images[camera].height : 0.;
 }
 
+//! NaN where the cell is empty or nan.
+double numberIn(const std::string& where, const std::string& cell)
+{
+    double number = NAN;
+    if (!cell.empty() && cell != "nan" && cell != "NaN" && !(parseNumber(cell, number) && std::isfinite(number)))
+        throw Failure(where + ": '" + cell + "' is no number");
+    return number;
+}
+
+struct Track
+{
+    std::string point;
+    size_t camera;
+    int x, y;                       //!< columns
+    double height;
+};
+
+std::vector<Track> tracksOf(const std::string& path, const CsvTable& table, const PixelOrigin& origin)
+{
+    std::vector<Track> tracks;
+    for (int x = 0; x < (int)table.names().size(); x++)
+    {
+        const std::string& name = table.names()[x];
+        size_t point, camera;
+        if (!isTrack(name, point, camera))
+            continue;
+        const std::string y = name.substr(0, name.size() - 1) + (name.back() == 'X' ? "Y" : "y");
+        if (table.find(y) < 0)
+            throw Failure("'" + path + "': there is no column '" + y + "'");
+        tracks.push_back({std::to_string(point), camera, x, table.find(y), heightOf(path, origin, camera)});
+    }
+    return tracks;
+}
+
 CsvTable readTracks(const std::string& path, const PixelOrigin& origin)
 {
     const CsvTable table(path, {}, "a table of tracks");
+    const std::vector<Track> tracks = tracksOf(path, table, origin);
     std::vector<Observation> all;
     for (size_t r = 0; r < table.rows().size(); r++)
-        for (const std::string& name : table.names())
+        for (const Track& track : tracks)
         {
-            int point;
-            size_t camera;
-            if (!isTrack(name, point, camera))
-                continue;
-            const std::string y = name.substr(0, name.size() - 1) + (name.back() == 'X' ? "Y" : "y");
-            const cv::Point2d pixel = table.pixelOrNone(table.rows()[r], name, y);
-            const double height = heightOf(path, origin, camera);
-            all.push_back({std::to_string(r + 1), std::to_string(point), camera, moved(pixel.x - 1),
-                           moved(height > 0 ? height - pixel.y : pixel.y - 1), table.rows()[r].line});
+            const CsvTable::Row& row = table.rows()[r];
+            const double x = numberIn(table.where(row), row.cells[track.x]), y = numberIn(table.where(row), row.cells[track.y]);
+            if (std::isnan(x) != std::isnan(y))
+                throw Failure(table.where(row) + ": " + table.names()[track.x] + " and " + table.names()[track.y]
+                              + " must both be numbers, or both empty");
+            all.push_back({std::to_string(r + 1), track.point, track.camera, moved(x - 1),
+                           moved(track.height > 0 ? track.height - y : y - 1), row.line});
         }
-    return tableOf(path, all);
+    return tableOf(path, all, 1);
 }
 
 std::vector<std::string> linesOf(const std::string& path)
@@ -138,15 +182,9 @@ std::vector<std::string> linesOf(const std::string& path)
     std::vector<std::string> lines;
     for (std::string line; std::getline(in, line); )
         lines.push_back(line.substr(0, line.find_last_not_of("\r\n ") + 1));
+    while (!lines.empty() && lines.back().empty())
+        lines.pop_back();
     return lines;
-}
-
-double numberIn(const std::string& where, const std::string& cell)
-{
-    double number = NAN;
-    if (!cell.empty() && cell != "nan" && cell != "NaN" && !parseNumber(cell, number))
-        throw Failure(where + ": '" + cell + "' is no number");
-    return number;
 }
 
 bool isDeepLabCut(const std::vector<std::string>& lines) { return !lines.empty() && lines[0].compare(0, 7, "scorer,") == 0; }
@@ -198,11 +236,23 @@ void addTargets(const std::string& path, const std::vector<std::string>& lines, 
     }
 }
 
+//! The files of a number after one that is not there would be left out without a word.
+void requireNoGap(const std::string& pattern, size_t next)
+{
+    const size_t FARTHEST = 100;
+    const auto numbered = [&](size_t number) { return std::string(pattern).replace(pattern.find("%d"), 2, std::to_string(number)); };
+    for (size_t number = next; number < next + FARTHEST; number++)
+        if (std::filesystem::is_regular_file(numbered(number)))
+            throw Failure("there is '" + numbered(number) + "', but no '" + numbered(next) + "': number the cameras without a gap");
+}
+
 CsvTable readFilesOfCameras(const std::string& pattern)
 {
     const std::vector<std::string> files = numberedFiles(pattern);
     if (files.empty())
         throw Failure("there is no file '" + pattern + "' with 0 or 1 in place of %d");
+    const size_t first = std::string(pattern).replace(pattern.find("%d"), 2, "0") == files[0] ? 0 : 1;
+    requireNoGap(pattern, first + files.size());
     std::vector<Observation> all;
     for (size_t c = 0; c < files.size(); c++)
     {
@@ -215,7 +265,7 @@ CsvTable readFilesOfCameras(const std::string& pattern)
             throw Failure("'" + files[c] + "' is neither a table of DeepLabCut (scorer, bodyparts, coords) nor OpenPTV's targets, which "
                           "are the files of one camera each that are read");
     }
-    return tableOf(pattern, all);
+    return tableOf(pattern, all, first);
 }
 
 } // namespace
@@ -234,8 +284,7 @@ CsvTable readPointTable(const std::string& path, const std::vector<std::string>&
     const auto has = [&](const char* name) { return std::find(heading.begin(), heading.end(), name) != heading.end(); };
     if (has(OPENLPT.frame) && has(OPENLPT.camera) && has(OPENLPT.point) && has(OPENLPT.u) && has(OPENLPT.v))
         return readLongForm(path, OPENLPT);
-    int point;
-    size_t camera;
+    size_t point, camera;
     if (std::any_of(heading.begin(), heading.end(), [&](const std::string& name) { return isTrack(name, point, camera); }))
         return readTracks(path, origin);
     if (has("scorer"))
