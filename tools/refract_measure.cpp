@@ -463,8 +463,8 @@ void addOptions(OptionParser& parser, Options& options)
 {
     parser.add("calib.yml", options.calibration, "what refract_calib wrote").required();
     parser.add("IMAGE", options.images, "of camera 1, of camera 2, ...");
-    parser.add("--points", options.points, "image points that are no target, in place of images: id,u1,v1,u2,v2,...");
-    options.origin.addTo(parser);
+    const Option points = parser.add("--points", options.points, "image points that are no target, in place of images: id,u1,v1,u2,v2,...");
+    options.origin.addTo(parser, points);
     options.target.addTo(parser, false);
     parser.add("--unit", options.unit, "unit of --square; what refract_calib had, or nothing")
         .check(isMember(unitNames()));

@@ -74,6 +74,18 @@ TEST_CASE("Tables of points that cannot be read are refused in a sentence", "[fo
     CHECK_THAT(failure(f, "a,b\n1,2\n"), Catch::Contains("there is no column 'id'"));
 }
 
+TEST_CASE("--y-from is refused where it says nothing", "[foreign]")
+{
+    TemporaryFolder f;
+    for (const char* text : {"frame,cam_id,pt_idx,x,y\n0,0,0,1,2\n", "id,u1,v1\n1,2,3\n"})
+    {
+        CHECK(read(f, text).rows().size() == 1);
+        CHECK_THROWS_WITH(read(f, text, {"top", {}}), Catch::Contains("--y-from=top is for tables of DLTdv or Argus"));
+    }
+    saved(f, "cam0.csv", std::string(DEEPLABCUT) + "0,1,2,0.9,3,4,0.9\n");
+    CHECK_THROWS_WITH(tools::readPointTable(f/"cam%d.csv", {"id"}, "a table", {"bottom", {cv::Size(9, 9)}}), Catch::Contains("--y-from"));
+}
+
 TEST_CASE("A camera is called as its table calls it, and none is left out without a word", "[foreign]")
 {
     TemporaryFolder f;

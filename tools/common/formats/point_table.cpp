@@ -270,23 +270,28 @@ CsvTable readFilesOfCameras(const std::string& pattern)
 
 } // namespace
 
-void PixelOrigin::addTo(OptionParser& parser)
+void PixelOrigin::addTo(OptionParser& parser, const Option& points)
 {
-    parser.add("--y-from", yFrom, "top or bottom: where y counts from in --points of DLTdv or Argus").check(isMember({"top", "bottom"}));
+    parser.add("--y-from", yFrom, "top or bottom: where y counts from in --points of DLTdv or Argus").check(isMember({"top", "bottom"}))
+        .needs(points);
 }
 
 CsvTable readPointTable(const std::string& path, const std::vector<std::string>& required, const std::string& what,
                         const PixelOrigin& origin)
 {
-    if (path.find("%d") != std::string::npos)
-        return readFilesOfCameras(path);
-    const std::vector<std::string> heading = headingOf(path);
-    const auto has = [&](const char* name) { return std::find(heading.begin(), heading.end(), name) != heading.end(); };
-    if (has(OPENLPT.frame) && has(OPENLPT.camera) && has(OPENLPT.point) && has(OPENLPT.u) && has(OPENLPT.v))
-        return readLongForm(path, OPENLPT);
+    const bool isOfCameras = path.find("%d") != std::string::npos;
+    const std::vector<std::string> heading = isOfCameras ? std::vector<std::string>() : headingOf(path);
     size_t point, camera;
     if (std::any_of(heading.begin(), heading.end(), [&](const std::string& name) { return isTrack(name, point, camera); }))
         return readTracks(path, origin);
+    if (!origin.yFrom.empty())
+        throw Failure("--y-from=" + origin.yFrom + " is for tables of DLTdv or Argus (pt1_cam1_X,pt1_cam1_Y,...), and '" + path
+                      + "' is none: leave it out");
+    if (isOfCameras)
+        return readFilesOfCameras(path);
+    const auto has = [&](const char* name) { return std::find(heading.begin(), heading.end(), name) != heading.end(); };
+    if (has(OPENLPT.frame) && has(OPENLPT.camera) && has(OPENLPT.point) && has(OPENLPT.u) && has(OPENLPT.v))
+        return readLongForm(path, OPENLPT);
     if (has("scorer"))
         throw Failure("'" + path + "' looks like DeepLabCut's table of one camera: give those of all, with %d in place of the camera's "
                       "number");

@@ -8,6 +8,7 @@
 
 namespace tools {
 
+class Option;
 class OptionParser;
 
 //! What tables of other programs leave open.
@@ -16,7 +17,7 @@ struct PixelOrigin
     std::string yFrom;                  //!< --y-from: "top" or "bottom"; empty: not said
     std::vector<cv::Size> images;       //!< of the cameras; y from the bottom needs their heights
 
-    void addTo(OptionParser& parser);
+    void addTo(OptionParser& parser, const Option& points);     //!< only with these
 };
 
 /** A table of points that several cameras saw: [image,]id,u1,v1,u2,v2,..., one row a point; or what other programs write, told by its
@@ -27,7 +28,7 @@ heading, which becomes the former (image is the frame; other columns are left ou
   0.6 a point was not seen;
 - OpenPTV's targets of one frame: a file for each camera, as before; points are those with a number of correspondence, pixels count from
   the corner of the first.
-Throws Failure as CsvTable does.
+Throws Failure as CsvTable does, and where `origin` says from where y counts in a table of which that is known.
 @param required columns of the former; @param what the file is, for the text where one is missing */
 CsvTable readPointTable(const std::string& path, const std::vector<std::string>& required, const std::string& what,
                         const PixelOrigin& origin = PixelOrigin());
