@@ -227,6 +227,29 @@ TEST_CASE("The size of an asymmetric plate is told, however it is turned", "[tar
         }
 }
 
+TEST_CASE("One dot that is much larger than the others leaves those far from it as precise", "[target][circles]")
+{
+    const Dots plate = {Size(9, 7), false, {}, {31}, 0.65};
+    const Target target(board("circles", "9x7"));
+    const Matx33d H = boardToImage(38, 10, 3e-4, Point2d(4, 3));
+    Mat image = picture(H, [&](const Point2d& p) { return plate.isDark(p); });
+    for (int x = 0; x < image.cols; x++)            // light from one side: one threshold for all is not half-way of each
+        image.col(x) *= 0.4 + 0.6*x/image.cols;
+    const std::vector<Point2d> found = target.detect(image);
+    REQUIRE((int)found.size() == target.count());
+    double most = 0;
+    for (int i = 0; i < target.count(); i++)
+        if (std::abs(i % 9 - 4) > 1 || std::abs(i/9 - 3) > 1)
+        {
+            double off = INFINITY;
+            for (const int of : {i, target.count() - 1 - i})
+                off = std::min(off, cv::norm(found[i] - through(H, Point2d(of % 9, of/9))));
+            most = std::max(most, off);
+        }
+    std::cout << "[numbers] plate with one large dot, radii of 10 px: worst of the others " << most << " px off" << std::endl;
+    CHECK(most < 0.06);
+}
+
 TEST_CASE("An AprilGrid is found, whatever its turn, and tags of which a part is hidden are not", "[target][aprilgrid]")
 {
     const Target target(board("aprilgrid", "5x4"));

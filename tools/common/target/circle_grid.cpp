@@ -176,28 +176,36 @@ DotImage dotAt(const BoardMap& map, const Vec2d& centre, double radius)
     return {map.at(centre), (Matx22d(x.x, y.x, x.y, y.y)*(0.5*radius/STEP)).inv()};
 }
 
+//! How far from a dot's centre there is no other one, in its radii. One that is large, or thought to be, is in the way of those beside it.
+double reachOf(size_t dot, const std::vector<Vec2d>& grid, const std::vector<double>& radii)
+{
+    const double RIM = 0.1;         // of a radius, that is left to the next dot
+    double room = INFINITY;
+    for (size_t i = 0; i < grid.size(); i++)
+        if (i != dot)
+            room = std::min(room, norm(grid[i] - grid[dot]) - radii[i]);
+    return room/radii[dot] - RIM;
+}
+
 /** Of a board seen at an angle the middle of a dot's image is not the image of its centre: tenths of a pixel, all in one direction.
-All dots together say how the board is seen, their areas how large they are.
-@param nearest distance of two dots on the board */
+All dots together say how the board is seen, their areas how large they are. */
 std::vector<Point2d> imagesOfCentres(const Mat& grey, const std::vector<Point2d>& blobs, std::vector<double> areas,
-                                     const std::vector<Vec2d>& grid, double nearest)
+                                     const std::vector<Vec2d>& grid)
 {
     const size_t FEWEST = 9;
-    const double RIM = 0.1;         // of a radius, that is left to the next dot
     if (blobs.size() < FEWEST)
         return blobs;
     const BoardMap roughly(grid, blobs);
     const std::vector<double> radii = dotRadii(roughly, grid, areas);
     if (radii.empty())
         return blobs;
-    const double largest = *std::max_element(radii.begin(), radii.end());
     std::vector<DotImage> dots;
     std::vector<double> reach;
     for (size_t i = 0; i < blobs.size(); i++)
     {
         dots.push_back(dotAt(roughly, grid[i], radii[i]));
         dots[i].centre = blobs[i];
-        reach.push_back((nearest - largest)/radii[i] - RIM);
+        reach.push_back(reachOf(i, grid, radii));
     }
     refineDots(grey, dots, reach);
     std::vector<Point2d> centres;
@@ -241,7 +249,7 @@ std::vector<Point2d> detectCircleGrid(const Mat& grey, Size size, bool asymmetri
             areas.push_back(0.25*CV_PI*diameter*diameter);
             places.push_back(grid[i]);
         }
-    const std::vector<Point2d> centres = imagesOfCentres(grey, blobs, areas, places, asymmetric ? std::sqrt(2.) : 1.);
+    const std::vector<Point2d> centres = imagesOfCentres(grey, blobs, areas, places);
     std::vector<Point2d> points;
     for (size_t i = 0, next = 0; 2*i < found.size(); i++)
         points.push_back(found[i].x == found[i].x ? centres[next++] : Point2d(NAN, NAN));
