@@ -213,6 +213,22 @@ TEST_CASE("A plate whose outer row is covered is no smaller plate with a free ch
     CHECK(explained(image, board("circles", "9x7")).find("keep its outer rows") != std::string::npos);
 }
 
+TEST_CASE("A plate of the right size of which too little is seen is not called one of another size", "[target][circles][missing]")
+{
+    const Dots plates[] = {{Size(9, 7), false, {0, 1, 2, 3, 4}, {}}, {Size(4, 11), true, {0, 1, 2}, {}}};
+    for (const Dots& plate : plates)
+    {
+        const Matx33d H = boardToImage(plate.asymmetric ? 40 : 50, 4, 2e-4, Point2d(4, 0.5*plate.size.height));
+        const Mat image = picture(H, [&](const Point2d& p) { return plate.isDark(p); });
+        const TargetOptions options = board(plate.asymmetric ? "acircles" : "circles", sizeText(plate.size));
+        CHECK(Target(options).detect(image).empty());
+        const std::string text = explained(image, options);
+        INFO(text);
+        CHECK(text.find("too little is seen") != std::string::npos);
+        CHECK(text.find("--size") == std::string::npos);
+    }
+}
+
 TEST_CASE("The size of an asymmetric plate is told, however it is turned", "[target][circles][missing]")
 {
     for (const Size& size : {Size(4, 11), Size(5, 9)})

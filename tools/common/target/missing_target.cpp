@@ -161,6 +161,10 @@ std::string otherDots(const std::vector<Without>& images, const Target& target, 
         bool asymmetric = false;
         const cv::Size size = dotGridIn(readGrey(images[i].path, channel), asymmetric);
         const std::string pattern = asymmetric ? "acircles" : "circles";
+        const cv::Size asked = asymmetric ? target.size() : sorted(target.size());
+        if (!size.empty() && pattern == target.patternName() && size == asked)
+            return "of the plate in " + quotedNames({images[i]}) + " too little is seen: at least half of the dots of each outer row and "
+                   "column, and three quarters of all, must be in view and uncovered";
         if (!size.empty())
             return "the dots in " + quotedNames({images[i]}) + " look like a plate of " + sizeText(size)
                    + " dots, not --pattern=" + target.patternName() + " --size=" + target.sizeText() + ": give --pattern=" + pattern
