@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // Sharpness and exposure of a board in an image, against boards that are blurred and exposed by known amounts.
+#include "target/april_grid.hpp"
 #include "target/board_quality.hpp"
 #include "drawn_board.hpp"
 #include <catch2/catch.hpp>
@@ -85,4 +86,28 @@ TEST_CASE("Points that were not seen, or none at all, spoil nothing", "[board qu
     const BoardQuality none = boardQuality(board.image, points, board.target());
     CHECK(std::isnan(none.worstEdge()));
     CHECK(none.words().find("nan") == std::string::npos);
+}
+
+TEST_CASE("The edges of an AprilGrid are those of its tags, whatever is beyond the gap between two", "[board quality][aprilgrid]")
+{
+    const int SIDE = 60;
+    for (const double spacing : {0.15, 0.3, 1.})
+        for (const double sigma : {1., 2.})
+        {
+            TargetOptions options;
+            options.pattern = "aprilgrid";
+            options.size = "5x4";
+            options.square = SIDE;
+            options.tagSpacing = spacing;
+            const Target target(options);
+            cv::Mat image = 30 + drawAprilGrid(cv::Size(5, 4), spacing, SIDE)*(170./255);
+            std::vector<cv::Point2d> points;
+            for (const cv::Point3d& p : target.objectPoints())
+                points.emplace_back(p.x + cvRound(spacing*SIDE) - 0.5, p.y + cvRound(spacing*SIDE) - 0.5);
+            const BoardQuality quality = boardQuality(blurred(image, sigma, sigma), points, target);
+            CAPTURE(spacing, sigma, quality.words(), quality.contrast);
+            for (int i : {0, 1})
+                CHECK(quality.edgeWidth[i] == Approx(widthOf(sigma)).epsilon(0.1));
+            CHECK(quality.contrast == Approx(170).epsilon(0.1));
+        }
 }

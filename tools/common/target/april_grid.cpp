@@ -240,7 +240,7 @@ Mat drawAprilGrid(Size tags, double spacing, int pixelsPerTag)
 std::vector<Point2d> detectAprilGrid(const Mat& grey, Size tags, double spacing)
 {
     const size_t LEAST = 2;
-    const double REACH = 0.8/MODULES*BORDER;        // what is nearest to a corner inside of a tag are its bits
+    const double REACH = 0.8*APRIL_BORDER;        // what is nearest to a corner inside of a tag are its bits
     Tags found;
     for (const double scale : {1., 2.})             // the squares join tags; in a larger image small ones come apart
         if (scale == 1. || (int)found.size() < tags.area())

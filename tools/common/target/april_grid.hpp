@@ -13,6 +13,8 @@ namespace tools {
 
 //! Tags there are to make a board of.
 const int APRIL_TAGS = 587;
+//! A tag's dark border, in its sides: two modules of ten.
+const double APRIL_BORDER = 0.2;
 
 /** Where the points of a board are, in sides of a tag.
 @param spacing between tags, in sides of a tag */

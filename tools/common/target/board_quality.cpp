@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "target/board_quality.hpp"
+#include "target/april_grid.hpp"
 
 #include <opencv2/imgproc.hpp>
 #include <algorithm>
@@ -67,14 +68,30 @@ Edge edgeOf(const std::vector<double>& values, double length)
     return {(passed(0.9) - passed(0.1))*length/(double)(values.size() - 1), std::abs(step)};
 }
 
+//! Whether there is an edge between two neighbours that tells: between two tags it is short.
+bool hasEdge(const std::pair<int, int>& pair, const Target& target)
+{
+    const int columns = target.size().width;
+    const int place = pair.second == pair.first + 1 ? pair.first % columns : pair.first/columns;
+    return target.pattern() != Target::APRILGRID || place % 2 == 0;
+}
+
+//! How far from an edge between two neighbours nothing else comes, as a part of their distance.
+double reachFrom(const Target& target)
+{
+    if (target.pattern() == Target::APRILGRID)          // the tag's border, and the gap to the next one
+        return 0.8*std::min(APRIL_BORDER, target.tagSpacing());
+    // As far as the square's middle; a marker leaves less room.
+    return target.pattern() == Target::CHARUCO ? 0.4*(1 - target.marker()/target.square()) : 0.4;
+}
+
 //! The line that crosses the edge between two neighbours of the target: a square's side, or the rim of the first's dot.
 std::pair<Point2d, Point2d> across(const Point2d& a, const Point2d& b, const Target& target)
 {
     const Point2d step = b - a, middle = 0.5*(a + b);
     if (target.pattern() == Target::CIRCLES || target.pattern() == Target::ACIRCLES)
         return {a, middle};
-    // As far as the square's middle; a marker leaves less room.
-    const double reach = target.pattern() == Target::CHARUCO ? 0.4*(1 - target.marker()/target.square()) : 0.4;
+    const double reach = reachFrom(target);
     const Point2d normal(-step.y, step.x);
     return {middle - reach*normal, middle + reach*normal};
 }
@@ -108,7 +125,7 @@ BoardQuality boardQuality(const Mat& grey, const std::vector<Point2d>& points, c
     for (const auto& pair : target.neighbours())
     {
         const Point2d &a = points[pair.first], &b = points[pair.second];
-        if (!seen(a) || !seen(b) || norm(b - a) < LEAST_STEP)
+        if (!hasEdge(pair, target) || !seen(a) || !seen(b) || norm(b - a) < LEAST_STEP)
             continue;
         const auto line = across(a, b, target);
         const Edge edge = edgeOf(profile(grey, line.first, line.second), norm(line.second - line.first));
