@@ -27,6 +27,18 @@ const double NaN = std::numeric_limits<double>::quiet_NaN();
 
 std::string joined(const std::string& folder, const std::string& name) { return (std::filesystem::path(folder)/name).string(); }
 
+//! A model's image, which is read and written by its name: below the folder it stays. Throws Failure.
+std::string imageIn(const std::string& folder, const ColmapImage& image)
+{
+    const std::filesystem::path name(image.name);
+    if (name.empty() || name.has_root_path() || std::find(name.begin(), name.end(), "..") != name.end())
+        throw Failure("image '" + image.name + "' of the model is not named from the folder of the images on: give it a name without '..' "
+                      "that does not begin with '/'");
+    return joined(folder, image.name);
+}
+
+void makeFolderOf(const std::string& file) { makeFolder(std::filesystem::path(file).parent_path().string()); }
+
 //! What an image shows of the points.
 struct Seen
 {
@@ -244,8 +256,8 @@ void checkPinholeImages(const ColmapModel& model, const std::vector<std::string>
     std::vector<std::string> all = inputs;
     for (const ColmapImage& image : model.images)
     {
-        outputs.push_back({"--out-dir", joined(folder, "images/" + image.name), OUTPUT_IN_FOLDER});
-        all.push_back(joined(imageFolder, image.name));
+        outputs.push_back({"--out-dir", imageIn(joined(folder, "images"), image), OUTPUT_IN_FOLDER});
+        all.push_back(imageIn(imageFolder, image));
     }
     for (const std::string& file : colmapFilesOf(joined(folder, "sparse"), true))
         outputs.push_back({"--out-dir", file, OUTPUT_IN_FOLDER});
@@ -270,12 +282,12 @@ PinholeImages writePinholeImages(const ColmapModel& model, const Calibration& ca
         toPixels(pinhole.K, seen.pinhole);
         if (seen.depths.empty())
             throw Failure("image '" + image.name + "' shows no point of the model: how far its scene is nothing tells");
-        const std::string path = joined(imageFolder, image.name);
+        const std::string path = imageIn(imageFolder, image);
         const Mat raw = readImage(path, true);
         requireSize(raw, path, pinhole.camera->imageSize());
         addErrors(seen, pinhole, raw.size(), errors);
-        const std::string output = joined(joined(folder, "images"), image.name);
-        makeFolder(std::filesystem::path(output).parent_path().string());
+        const std::string output = imageIn(joined(folder, "images"), image);
+        makeFolderOf(output);
         writeImage(output, remapChannels(raw, {mapOf(seen, pinhole, raw.size())}, INTER_CUBIC));
         image = corrected(image, seen, pinhole, camera);
         result.points += image.pixels.size();
