@@ -18,6 +18,9 @@ SurveyResult adjustColmap(const SurveyOptions& options, const BundleStart& start
     result.survey = surveyOf(readColmapModel(options.model), start.rig, options.images, options.model);
     result.start = startSurvey(result.survey, start, options.lengths, options.positions, options.model, quiet);
     result.adjustment = adjustSurvey(result.survey, start, result.start, options.robust, quiet);
+    for (int view = 0; view < (int)result.survey.views.size(); view++)
+        if (!result.adjustment.hasPose(view))
+            result.survey.leaveOut(view);
     result.findings = findingsOf(start, result.start.lengths, result.adjustment.bundle, options.pixelSigma, options.maxRms);
     result.findings.scale = scaleText(result.start, result.adjustment);
     if (result.start.isScaleOfWindow && result.adjustment.scaleStd > VAGUE)

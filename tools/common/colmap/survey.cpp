@@ -181,6 +181,16 @@ void requireSizes(const ColmapModel& model, const RigModel& rig, const std::vect
 
 } // namespace
 
+void Survey::leaveOut(int view)
+{
+    for (size_t i = 0; i < viewOf.size(); i++)
+        if (viewOf[i] == view)
+        {
+            leftOut.push_back(model.images[i].name);
+            viewOf[i] = cameraOf[i] = -1;
+        }
+}
+
 Survey surveyOf(const ColmapModel& model, const RigModel& rig, const std::vector<std::string>& globs, const std::string& folder)
 {
     const std::vector<Taken> taken = takenBy(model, (int)rig.cameras.size(), globs, folder);

@@ -18,12 +18,14 @@ struct Survey
     ColmapModel model;                          //!< pinholes in water, bent, in any unit
     std::vector<int> cameraOf, viewOf;          //!< of each of its images; -1: left out
     std::vector<std::string> views;             //!< one a moment
-    std::vector<std::string> leftOut;           //!< names of images without a pose, or with fewer than MIN_POINTS points
+    std::vector<std::string> leftOut;           //!< names of images without a pose, with fewer than MIN_POINTS points, or of which no point holds
 
     std::vector<cv::Vec3i> observations;        //!< view, camera, index of the point
     std::vector<cv::Point2d> pixels;            //!< raw, of each of them
     std::vector<cv::Vec2i> sources;             //!< image, and index of the pixel there, of each of them
 
+    //! Its images have no pose.
+    void leaveOut(int view);
     int imageCount() const { return (int)model.images.size() - (int)leftOut.size(); }
     //! "image 'a.png'" of one that was not left out, by an observation.
     const ColmapImage& imageOf(int observation) const { return model.images[sources[observation][0]]; }

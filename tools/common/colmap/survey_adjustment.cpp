@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <limits>
 
 using namespace cv;
 using namespace cv::refract;
@@ -74,6 +76,20 @@ void adjust(const Survey& survey, const BundleStart& bundle, const SurveyStart& 
     result.tvecs = vectorsOf(tvecs);
 }
 
+//! What has no answer may have one from where it started.
+void restartLost(const SurveyStart& start, std::vector<Point3d>& points, SurveyAdjustment& result)
+{
+    for (size_t i = 0; i < points.size(); i++)
+        if (!std::isfinite(points[i].x))
+            points[i] = start.points[i];
+    for (size_t view = 0; view < result.rvecs.size(); view++)
+        if (!result.hasPose((int)view))
+        {
+            result.rvecs[view] = start.rvecs[view];
+            result.tvecs[view] = start.tvecs[view];
+        }
+}
+
 //! @return the squares of all errors that are used
 double setErrors(const Survey& survey, SurveyAdjustment& result)
 {
@@ -87,7 +103,7 @@ double setErrors(const Survey& survey, SurveyAdjustment& result)
     for (size_t image = 0; image < rows.size(); image++)
     {
         const int view = (int)(image/rig.cameras.size()), camera = (int)(image % rig.cameras.size());
-        if (rows[image].empty() || std::isnan(result.rvecs[view][0]))
+        if (rows[image].empty() || !result.hasPose(view))
             continue;
         const RigidTransform pose = rig.extrinsics[camera]*result.poseOf(view);
         std::vector<Point3d> points;
@@ -115,19 +131,28 @@ double setErrors(const Survey& survey, SurveyAdjustment& result)
     return all;
 }
 
+//! A point whose +- is not finite has no answer, and its observations no use.
 void setPoints(const Survey& survey, const std::vector<Point3d>& points, const Mat& deviations, SurveyAdjustment& result)
 {
     std::vector<int> seen(points.size(), 0);
-    result.images.assign(points.size(), 0);
-    for (size_t i = 0; i < survey.observations.size(); i++)
-    {
-        seen[survey.observations[i][2]]++;
-        result.images[survey.observations[i][2]] += result.used[i];
-    }
+    std::vector<char> isFound(points.size(), 0);
     for (size_t i = 0; i < points.size(); i++)
     {
         const Vec3d s(deviations.ptr<double>((int)i));
-        const bool found = std::isfinite(points[i].x + s[0] + s[1] + s[2]);
+        isFound[i] = std::isfinite(points[i].x + s[0] + s[1] + s[2]);
+    }
+    result.images.assign(points.size(), 0);
+    for (size_t i = 0; i < survey.observations.size(); i++)
+    {
+        const int point = survey.observations[i][2];
+        seen[point]++;
+        result.used[i] = result.used[i] && isFound[point];
+        result.images[point] += result.used[i];
+    }
+    for (size_t i = 0; i < points.size(); i++)
+    {
+        const bool found = isFound[i] != 0;
+        const Vec3d s(deviations.ptr<double>((int)i));
         result.bundle.points.push_back(found ? points[i] : Point3d(NaN, NaN, NaN));
         result.bundle.sigma.push_back(found ? s : Vec3d::all(NaN));
         result.bundle.status.push_back(found ? (uchar)REFRACT_OK : seen[i] < 2 ? (uchar)REFRACT_NOT_FINITE : INCONSISTENT);
@@ -165,21 +190,56 @@ void setAngles(const Survey& survey, SurveyAdjustment& result)
     }
 }
 
-//! Of distances from the first view, which is the frame or has a position: what both have in common is not known, and counts as if not.
-void setScaleStd(SurveyAdjustment& result)
+//! Of distances from the first view, which is the frame.
+double scaleStdByViews(const SurveyAdjustment& result)
 {
-    size_t frame = 0;
-    while (frame < result.rvecs.size() && std::isnan(result.rvecs[frame][0]))
+    int frame = 0;
+    while (frame < (int)result.rvecs.size() && !result.hasPose(frame))
         frame++;
-    result.scaleStd = std::numeric_limits<double>::infinity();
-    for (size_t view = frame + 1; view < result.rvecs.size(); view++)
+    double least = std::numeric_limits<double>::infinity();
+    for (int view = frame + 1; view < (int)result.rvecs.size(); view++)
     {
-        const Vec3d base = result.centreOf((int)view) - result.centreOf((int)frame);
-        const Matx33d covariance = result.centreCovariance((int)view) + result.centreCovariance((int)frame);
+        if (!result.hasPose(view))
+            continue;
+        const Vec3d base = result.centreOf(view) - result.centreOf(frame);
+        const Matx33d covariance = result.centreCovariance(view) + result.centreCovariance(frame);
         const double length = norm(base), variance = base.dot(covariance*base)/(length*length);
         if (length > 0 && std::isfinite(variance))
-            result.scaleStd = std::min(result.scaleStd, std::sqrt(variance)/length);
+            least = std::min(least, std::sqrt(variance)/length);
     }
+    return least;
+}
+
+//! No view is the frame then, and what is common to all places counts nothing: what positions tell by themselves, or better.
+double scaleStdByPositions(const SurveyStart& start, const SurveyAdjustment& result)
+{
+    Vec3d mean;
+    double weights = 0., information = 0.;
+    const auto sum = [&](const std::function<void(const KnownPosition&, double)>& add) {
+        for (const auto& position : start.positions)
+            if (result.hasPose(position.first))
+                add(position.second, 1./(position.second.std*position.second.std));
+    };
+    sum([&](const KnownPosition& position, double weight) {
+        mean += weight*position.center;
+        weights += weight;
+    });
+    mean *= 1./weights;
+    sum([&](const KnownPosition& position, double weight) {
+        const Vec3d off = position.center - mean;
+        information += weight*off.dot(off);
+    });
+    return 1./std::sqrt(information);
+}
+
+//! Beside the frame, or positions.
+int unknownOfPoses(const SurveyStart& start, const SurveyAdjustment& result)
+{
+    int unknown = start.positions.empty() ? -6 : 0;
+    for (int view = 0; view < (int)result.rvecs.size(); view++)
+        if (result.hasPose(view))
+            unknown += start.positions.count(view) ? 3 : 6;
+    return unknown;
 }
 
 } // namespace
@@ -217,17 +277,15 @@ SurveyAdjustment adjustSurvey(const Survey& survey, const BundleStart& bundle, c
         progress.at(format("%zu views, %zu points, %zu observations", survey.views.size(), points.size(), survey.observations.size()));
         result.bundle.fit.rig = bundle.rig.clone();     // what is known of it is known of these values
         adjust(survey, bundle, start, robust, result, points, deviations);
-        for (size_t i = 0; i < points.size(); i++)
-            if (round + 1 < rounds && !std::isfinite(points[i].x))
-                points[i] = start.points[i];
+        if (round + 1 < rounds)
+            restartLost(start, points, result);
         progress.step();
     }
     setPoints(survey, points, deviations, result);
     const double squares = setErrors(survey, result);
     setAngles(survey, result);
-    setScaleStd(result);
-    const int known = start.positions.empty() ? 6 : 3*(int)start.positions.size();      // the frame, or positions
-    setNoise(bundle, start.lengths, squares, 6*(int)survey.views.size() - known, result.bundle);
+    result.scaleStd = start.positions.empty() ? scaleStdByViews(result) : scaleStdByPositions(start, result);
+    setNoise(bundle, start.lengths, squares, unknownOfPoses(start, result), result.bundle);
     return result;
 }
 

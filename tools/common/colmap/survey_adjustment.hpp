@@ -13,15 +13,16 @@ namespace tools {
 struct SurveyAdjustment
 {
     BundleAdjustment bundle;                    //!< its points are those of the model; less the start's origin
-    std::vector<cv::Vec3d> rvecs, tvecs;        //!< scene -> camera 1, of each view
+    std::vector<cv::Vec3d> rvecs, tvecs;        //!< scene -> camera 1, of each view; NaN: none of its observations is used
     std::vector<cv::Mat> viewCovariances;       //!< 6x6 each; 0: it is the frame
     std::vector<uchar> used;                    //!< of each observation
     std::vector<double> errors;                 //!< of each observation, px: where it was seen from where it is projected; NaN: no point
     std::vector<int> images;                    //!< of each point: how many observations are used
     std::vector<double> angles;                 //!< of each point: the largest between its rays, degrees
-    double scaleStd = 0.;                       //!< relative, of the distance that is known best between two places of the rig
+    double scaleStd = 0.;                       //!< relative, of the distance that is known best between two places of the rig; of positions: by them
     int largeErrors = 0;                        //!< points whose +- is more than a tenth of their distance
 
+    bool hasPose(int view) const { return rvecs[view] == rvecs[view]; }
     RigidTransform poseOf(int view) const { return tools::transformOf(rvecs[view], tvecs[view]); }
     //! Where camera 1 was.
     cv::Vec3d centreOf(int view) const { return poseOf(view).inverse(cv::Vec3d()); }

@@ -102,11 +102,16 @@ void addRig(const SurveyResult& result, ColmapModel& model)
         own.sensors.push_back({COLMAP_CAMERA, (uint32_t)c + 1, (uint8_t)(c > 0), colmapPoseOf(rig.extrinsics[c])});
     model.rigs = {own};
     model.frames.clear();
+    std::vector<int> frameOf(result.survey.views.size(), -1);
     for (size_t view = 0; view < result.survey.views.size(); view++)
-        model.frames.push_back({(uint32_t)view + 1, 1, colmapPoseOf(placed(result, (int)view)), {}});
+        if (result.adjustment.hasPose((int)view))
+        {
+            frameOf[view] = (int)model.frames.size();
+            model.frames.push_back({(uint32_t)view + 1, 1, colmapPoseOf(placed(result, (int)view)), {}});
+        }
     for (size_t i = 0; i < result.survey.viewOf.size(); i++)
         if (result.survey.viewOf[i] >= 0)
-            model.frames[result.survey.viewOf[i]].data.push_back({COLMAP_CAMERA, (uint32_t)result.survey.cameraOf[i] + 1,
+            model.frames[frameOf[result.survey.viewOf[i]]].data.push_back({COLMAP_CAMERA, (uint32_t)result.survey.cameraOf[i] + 1,
                                                                   result.survey.model.images[i].id});
 }
 
