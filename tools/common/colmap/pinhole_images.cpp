@@ -227,8 +227,9 @@ void writeStereo(const std::string& folder, const ColmapModel& model)
         match += image.name + "\n__auto__, 20\n";
         fusion += image.name + "\n";
     }
-    for (const char* empty : {"depth_maps", "normal_maps", "consistency_graphs"})
-        makeFolder(joined(folder, empty));
+    for (const char* of : {"depth_maps", "normal_maps", "consistency_graphs"})
+        for (const ColmapImage& image : model.images)
+            makeFolderOf(imageIn(joined(folder, of), image));
     writeText(joined(folder, "patch-match.cfg"), match);
     writeText(joined(folder, "fusion.cfg"), fusion);
 }
