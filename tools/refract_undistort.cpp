@@ -1,6 +1,7 @@
 // This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
 // SPDX-License-Identifier: Apache-2.0
 
+#include "bundle/bundle_output.hpp"
 #include "calibrate/calib_file.hpp"
 #include "calibrate/light.hpp"
 #include "calibrate/rig_data.hpp"
@@ -13,6 +14,7 @@
 #include "console/progress.hpp"
 
 #include <opencv2/imgproc.hpp>
+#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <limits>
@@ -183,7 +185,10 @@ int undistortSurvey(const Options& options, const Calibration& calibration, cons
     if (!command.quiet())
         std::cout << cv::format("%d image%s written to %s/images, corrected at the depth of %zu pixels;\n", done.images,
                                 done.images == 1 ? "" : "s", options.folder.c_str(), done.points)
-                  << cv::format("off by wrong depth between them: %.2g px RMS, 95 %% below %.2g px\n", done.rms, done.most);
+                  << (std::isnan(done.rms) ? std::string("too few points in an image to say what wrong depth between them does\n")
+                      : cv::format("off by wrong depth between them: %.2g px RMS, 95 %% below %.2g px\n", done.rms, done.most));
+    if (!command.quiet() && !done.leftOut.empty())
+        std::cout << fittedLine("images left out, which show no point: ", done.leftOut) << "\n";
     return DONE;
 }
 

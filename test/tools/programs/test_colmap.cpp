@@ -363,6 +363,21 @@ TEST_CASE("A refined model gives images of a pinhole without window", "[tools][u
     CAPTURE(worst, count);
     CHECK(count > 20);
     CHECK(worst < 4);           // the window as found, the depth between points
+    CHECK(std::filesystem::is_directory(f.path()/"dense/stereo/depth_maps/left"));
+    const auto refusal = [&](const std::string& calibration, const std::string& model) {
+        const ToolResult run = runTool("refract_undistort " + f / calibration + " --colmap=" + f / model + " --image-dir=" + f / "images"
+                                       + " --out-dir=" + f / "wrong");
+        CAPTURE(calibration, model, run.out);
+        CHECK(run.code == 1);
+        CHECK_FALSE(std::filesystem::exists(f / "wrong"));
+        return run.err;
+    };
+    CHECK(mentions(refusal("again.yml", "sparse"), "of the model's points are more than "));       // bent, in another unit
+    network.start[0]->setWindow(GlassWindow(Vec3d(0.2, 0, 1), 60, 1.49, 60, 1.333));
+    writeRig(f / "other.yml", network.start, network.Rs, network.Ts);
+    CHECK(mentions(refusal("other.yml", "refracted"), "of the model's points are more than "));
+    std::filesystem::remove(f.path()/"images/left/017.png");
+    CHECK(mentions(refusal("again.yml", "refracted"), "left/017.png', an image of the model"));
 }
 
 TEST_CASE("What refract_bundle --colmap cannot do is said in a sentence", "[tools][bundle][colmap]")

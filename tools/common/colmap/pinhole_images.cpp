@@ -23,7 +23,7 @@ namespace tools {
 namespace {
 
 const size_t FEW = 20;                  // points of an image that wrong depth is told by
-const double NaN = std::numeric_limits<double>::quiet_NaN();
+const double NaN = std::numeric_limits<double>::quiet_NaN(), INFINITE = std::numeric_limits<double>::infinity();
 
 std::string joined(const std::string& folder, const std::string& name) { return (std::filesystem::path(folder)/name).string(); }
 
@@ -44,7 +44,8 @@ struct Seen
 {
     std::vector<int> pixels;            //!< of the image's list
     std::vector<Point2d> raw, pinhole;  //!< where it was seen, where the pinhole sees the point
-    std::vector<double> depths;
+    std::vector<Point3d> inCamera;
+    std::vector<double> depths;         //!< z of these
 };
 
 //! A camera of the calibration and its pinhole.
@@ -76,6 +77,7 @@ public:
             seen.pixels.push_back((int)k);
             seen.raw.push_back({image.pixels[k].x - COLMAP_CORNER, image.pixels[k].y - COLMAP_CORNER});
             seen.pinhole.push_back({X[0]/X[2], X[1]/X[2]});
+            seen.inCamera.push_back(Point3d(X));
             seen.depths.push_back(X[2]);
         }
         return seen;
@@ -95,6 +97,44 @@ int cameraOf(const ColmapImage& image, const Calibration& calibration)
     return (int)image.camera - 1;
 }
 
+double median(std::vector<double> values)
+{
+    std::nth_element(values.begin(), values.begin() + values.size()/2, values.end());
+    return values[values.size()/2];
+}
+
+//! px: how far the camera sees a point of the image from where it was seen; infinite: it does not see it.
+void addDistances(const Seen& seen, const Ptr<RefractiveCamera>& camera, std::vector<double>& distances)
+{
+    if (seen.raw.empty())
+        return;
+    std::vector<Point2d> pixels;
+    refractiveProjectPoints(seen.inCamera, Vec3d(), Vec3d(), camera, pixels);
+    for (size_t i = 0; i < pixels.size(); i++)
+    {
+        const double distance = norm(pixels[i] - seen.raw[i]);
+        distances.push_back(std::isfinite(distance) ? distance : INFINITE);
+    }
+}
+
+/** A bent model, one in another unit, and another calibration see the points elsewhere than the model says of itself. Without that nothing
+would tell: its images are wrong, or black. */
+void requireSameCameras(const ColmapModel& model, const Calibration& calibration, const Scene& scene)
+{
+    const double TIMES = 3., LEAST = 0.5;           // of the model's own errors; px
+    std::vector<double> distances, own;
+    for (const ColmapImage& image : model.images)
+        addDistances(scene.seenIn(image), calibration.cameras[cameraOf(image, calibration)].camera, distances);
+    for (const ColmapPoint& point : model.points)
+        own.push_back(point.error);
+    if (distances.empty())
+        throw Failure("no image of the model shows a point of it that is in front of the camera");
+    const double off = median(distances), stated = median(own);
+    if (!(off < TIMES*std::max(stated, LEAST)))
+        throw Failure(format("half of the model's points are more than %.3g px off where this calibration sees them, by its own errors %.2g "
+                             "px: give what one run of refract_bundle wrote, --out and --colmap-out", off, stated));
+}
+
 //! Of the largest image without black corners, at the median depth.
 std::vector<Pinhole> pinholesOf(const ColmapModel& model, const Calibration& calibration, const Scene& scene)
 {
@@ -107,11 +147,7 @@ std::vector<Pinhole> pinholesOf(const ColmapModel& model, const Calibration& cal
     {
         Pinhole pinhole = {calibration.cameras[c].camera, Matx33d::eye()};
         if (!depths[c].empty())
-        {
-            std::nth_element(depths[c].begin(), depths[c].begin() + depths[c].size()/2, depths[c].end());
-            pinhole.K = Mat(getOptimalNewRefractiveCameraMatrix(pinhole.camera, depths[c][depths[c].size()/2],
-                                                                pinhole.camera->imageSize(), 0.));
-        }
+            pinhole.K = Mat(getOptimalNewRefractiveCameraMatrix(pinhole.camera, median(depths[c]), pinhole.camera->imageSize(), 0.));
         pinholes.push_back(pinhole);
     }
     return pinholes;
@@ -216,6 +252,8 @@ void completeModel(const std::vector<Pinhole>& pinholes, ColmapModel& model)
     for (const ColmapImage& image : model.images)
         for (size_t k = 0; k < image.pixels.size(); k++)
             model.points[indexOf[image.pixels[k].point]].track.push_back({image.id, (uint32_t)k});
+    const auto isUnseen = [](const ColmapPoint& point) { return point.track.empty(); };
+    model.points.erase(std::remove_if(model.points.begin(), model.points.end(), isUnseen), model.points.end());
 }
 
 //! COLMAP's own choice of partners for each image.
@@ -257,6 +295,9 @@ void checkPinholeImages(const ColmapModel& model, const std::vector<std::string>
     std::vector<std::string> all = inputs;
     for (const ColmapImage& image : model.images)
     {
+        if (!std::filesystem::exists(imageIn(imageFolder, image)))
+            throw Failure("there is no '" + imageIn(imageFolder, image) + "', an image of the model: --image-dir is the folder that its "
+                          "names are from");
         outputs.push_back({"--out-dir", imageIn(joined(folder, "images"), image), OUTPUT_IN_FOLDER});
         all.push_back(imageIn(imageFolder, image));
     }
@@ -269,6 +310,7 @@ PinholeImages writePinholeImages(const ColmapModel& model, const Calibration& ca
                                  const std::string& folder, bool quiet)
 {
     const Scene scene(model);
+    requireSameCameras(model, calibration, scene);
     const std::vector<Pinhole> pinholes = pinholesOf(model, calibration, scene);
     PinholeImages result;
     std::vector<double> errors;
@@ -282,7 +324,11 @@ PinholeImages writePinholeImages(const ColmapModel& model, const Calibration& ca
         Seen seen = scene.seenIn(image);
         toPixels(pinhole.K, seen.pinhole);
         if (seen.depths.empty())
-            throw Failure("image '" + image.name + "' shows no point of the model: how far its scene is nothing tells");
+        {
+            result.leftOut.push_back(image.name);
+            progress.step();
+            continue;
+        }
         const std::string path = imageIn(imageFolder, image);
         const Mat raw = readImage(path, true);
         requireSize(raw, path, pinhole.camera->imageSize());
@@ -295,6 +341,9 @@ PinholeImages writePinholeImages(const ColmapModel& model, const Calibration& ca
         result.images++;
         progress.step();
     }
+    const auto isLeftOut = [&](const ColmapImage& image) {
+        return std::find(result.leftOut.begin(), result.leftOut.end(), image.name) != result.leftOut.end(); };
+    dense.images.erase(std::remove_if(dense.images.begin(), dense.images.end(), isLeftOut), dense.images.end());
     completeModel(pinholes, dense);
     writeColmapModel(dense, joined(folder, "sparse"));
     writeStereo(joined(folder, "stereo"), dense);
