@@ -18,6 +18,7 @@ namespace tools {
 namespace {
 
 const int IMAGES = 8, POINTS = 250;         // of the trials
+const char ADVICE[] = "; give --lengths or --positions";
 const double INFINITE = std::numeric_limits<double>::infinity();
 
 //! The part of a survey that tries scales: some images, the points that most of them show.
@@ -27,7 +28,7 @@ struct Trials
     std::vector<int> points;
     std::vector<Vec3i> observations;
     std::vector<Point2d> pixels;
-    int a = 0, b = 0;                       //!< of `points`, far from each other
+    std::vector<std::pair<int, int>> pairs; //!< of `points`, each in one pair: what holds the scale together
 };
 
 std::vector<int> order(const std::vector<int>& counts)
@@ -75,69 +76,101 @@ Trials trialsOf(const Survey& survey)
     return trials;
 }
 
-void findFarPoints(const Survey& survey, Trials& trials)
+/** Of those that most images show, each with the free one that is three quarters of the way to the farthest: a point that is wrong is far
+from all others, and is in one pair of many. */
+void findPairs(const Survey& survey, Trials& trials)
 {
-    const size_t some = std::min<size_t>(trials.points.size(), 60);      // those that most images show
-    double farthest = 0;
-    for (size_t i = 0; i < some; i++)
-        for (size_t j = 0; j < i; j++)
-        {
-            const double distance = norm(survey.model.points[trials.points[i]].X - survey.model.points[trials.points[j]].X);
-            if (distance > farthest)
-            {
-                farthest = distance;
-                trials.a = (int)i;
-                trials.b = (int)j;
-            }
-        }
+    const int some = (int)std::min<size_t>(trials.points.size(), 60);
+    std::vector<char> isTaken(some, 0);
+    for (int i = 0; i < some; i++)
+    {
+        std::vector<std::pair<double, int>> free;
+        for (int j = i + 1; j < some && !isTaken[i]; j++)
+            if (!isTaken[j])
+                free.push_back({norm(survey.model.points[trials.points[i]].X - survey.model.points[trials.points[j]].X), j});
+        if (free.empty())
+            continue;
+        std::nth_element(free.begin(), free.begin() + 3*free.size()/4, free.end());
+        const auto& partner = free[3*free.size()/4];
+        if (!(partner.first > 0))
+            continue;
+        isTaken[i] = isTaken[partner.second] = 1;
+        trials.pairs.push_back({i, partner.second});
+    }
 }
 
-//! px; infinite: no answer.
-double errorAt(double factor, const Survey& survey, const RigModel& rig, const Trials& trials)
+//! RMS of most: wrong observations have no say. Infinite where fewer have an error: a scene of which part cannot be seen fits no better.
+double errorOfMost(std::vector<double> errors)
 {
-    std::vector<Point3d> points;
-    for (int point : trials.points)
-        points.push_back(Point3d(factor*survey.model.points[point].X));
-    std::vector<Mat> rvecs, tvecs, Rs, Ts, viewCovariances;
-    for (size_t c = 0; c < rig.cameras.size(); c++)
+    const double MOST = 0.8;
+    for (double& error : errors)
+        error = std::isfinite(error) ? error : INFINITE;
+    const size_t count = (size_t)(MOST*(double)errors.size());
+    std::sort(errors.begin(), errors.end());
+    const double squares = std::inner_product(errors.begin(), errors.begin() + (long)count, errors.begin(), 0.);
+    return std::sqrt(squares/(double)count);
+}
+
+//! @return whether each view has one
+bool findPoses(double factor, const Survey& survey, const RigModel& rig, const Trials& trials, const std::vector<Point3d>& points,
+               std::vector<Mat>& rvecs, std::vector<Mat>& tvecs)
+{
+    std::vector<std::vector<Point3d>> objects(trials.images.size());
+    std::vector<std::vector<Point2d>> pixels(trials.images.size());
+    for (size_t i = 0; i < trials.observations.size(); i++)
     {
-        Rs.push_back(Mat(rig.extrinsics[c].R, true));
-        Ts.push_back(Mat(rig.extrinsics[c].T, true));
+        objects[trials.observations[i][0]].push_back(points[trials.observations[i][2]]);
+        pixels[trials.observations[i][0]].push_back(trials.pixels[i]);
     }
     for (size_t view = 0; view < trials.images.size(); view++)
     {
         const ColmapImage& image = survey.model.images[trials.images[view]];
         const int camera = survey.cameraOf[trials.images[view]];
-        RigidTransform pose = transformOf(image.cam_from_world);
-        std::vector<Point3d> objects;
-        std::vector<Point2d> pixels;
-        for (size_t i = 0; i < trials.observations.size(); i++)
-            if (trials.observations[i][0] == (int)view)
-            {
-                objects.push_back(points[trials.observations[i][2]]);
-                pixels.push_back(trials.pixels[i]);
-            }
+        const RigidTransform pose = transformOf(image.cam_from_world);
         Vec3d rvec = rotationVector(pose.R), tvec = factor*pose.T;
-        if (objects.size() < 4 || !refractiveSolvePnP(objects, pixels, rig.cameras[camera], rvec, tvec, true))
-            return INFINITE;
+        if (objects[view].size() < 4 || !refractiveSolvePnP(objects[view], pixels[view], rig.cameras[camera], rvec, tvec, true))
+            return false;
         poseInCamera1(rig, camera, rvec, tvec);
         rvecs.push_back(Mat(rvec, true));
         tvecs.push_back(Mat(tvec, true));
     }
-    const double length = norm(points[trials.a] - points[trials.b]);
-    const std::vector<Vec4d> lengths = {{(double)trials.a, (double)trials.b, length, 1e-4*length}};
-    std::vector<Ptr<RefractiveCamera>> cameras = rig.clone().cameras;
-    Mat deviations, covariance, pointDeviations, errors, inliers;
+    return true;
+}
+
+//! px; infinite: no answer. All pairs together hold the scale, each by itself may be somewhat wrong.
+double errorAt(double factor, const Survey& survey, const RigModel& rig, const Trials& trials)
+{
+    const double OF_PAIR = 0.01;
+    std::vector<Point3d> points;
+    for (int point : trials.points)
+        points.push_back(Point3d(factor*survey.model.points[point].X));
+    RigModel fitted = rig.clone();
+    std::vector<Mat> rvecs, tvecs, Rs, Ts;
+    if (!findPoses(factor, survey, rig, trials, points, rvecs, tvecs))
+        return INFINITE;
+    for (const RigidTransform& place : rig.extrinsics)
+    {
+        Rs.push_back(Mat(place.R, true));
+        Ts.push_back(Mat(place.T, true));
+    }
+    std::vector<Vec4d> lengths;
+    for (const auto& pair : trials.pairs)
+    {
+        const double length = norm(points[pair.first] - points[pair.second]);
+        lengths.push_back({(double)pair.first, (double)pair.second, length, OF_PAIR*length});
+    }
+    Mat deviations, covariance, errors, inliers;
     try
     {
-        return refractiveBundleAdjust(trials.observations, trials.pixels, cameras, rig.windows, Rs, Ts, rvecs, tvecs, points, lengths,
-                                      deviations, covariance, noArray(), pointDeviations, errors, inliers, GLASS_FIX_NORMAL, noArray(),
-                                      TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 100, 1e-9));
+        refractiveBundleAdjust(trials.observations, trials.pixels, fitted.cameras, rig.windows, Rs, Ts, rvecs, tvecs, points, lengths,
+                               deviations, covariance, noArray(), noArray(), errors, inliers, GLASS_FIX_NORMAL | GLASS_ROBUST,
+                               noArray(), TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 100, 1e-9));
     }
     catch (const cv::Exception&)            // a scene that is too near
     {
         return INFINITE;
     }
+    return errorOfMost(errorsOf(trials.observations, trials.pixels, fitted, vectorsOf(rvecs), vectorsOf(tvecs), points));
 }
 
 double medianDepth(const Survey& survey)
@@ -165,12 +198,25 @@ double reachOf(const RigModel& rig)
 //! Where a parabola through three of them has its least, in the logarithm.
 double leastOf(const std::vector<double>& factors, const std::vector<double>& errors, int best)
 {
-    if (best == 0 || best + 1 == (int)errors.size() || !std::isfinite(errors[best - 1]) || !std::isfinite(errors[best + 1]))
-        return factors[best];
     const auto square = [&](int i) { return errors[i]*errors[i]; };
     const double curvature = square(best - 1) + square(best + 1) - 2*square(best);
     const double shift = curvature > 0 ? 0.5*(square(best - 1) - square(best + 1))/curvature : 0.;
     return factors[best]*std::pow(factors[best + 1]/factors[best], shift);
+}
+
+//! Throws Failure where the best is the first or last that has an answer: it may be farther on.
+double bestOf(const std::vector<double>& factors, const std::vector<double>& errors, double depth)
+{
+    const int best = (int)(std::min_element(errors.begin(), errors.end()) - errors.begin()), last = (int)errors.size() - 1;
+    if (!std::isfinite(errors[best]))
+        throw Failure("nothing tells the scale: at no distance of the scene do rays through the window meet" + std::string(ADVICE));
+    if (best == 0 || !std::isfinite(errors[best - 1]))
+        throw Failure(format("nothing tells the scale: rays through the window meet best with the scene at %.3g or nearer", factors[best]*depth)
+                      + ADVICE);
+    if (best == last || !std::isfinite(errors[best + 1]))
+        throw Failure(format("nothing tells the scale: rays through the window meet best with the scene at %.3g or farther",
+                             factors[best]*depth) + ADVICE);
+    return leastOf(factors, errors, best);
 }
 
 } // namespace
@@ -178,14 +224,13 @@ double leastOf(const std::vector<double>& factors, const std::vector<double>& er
 ScaleOfWindow scaleOfWindow(const Survey& survey, const RigModel& rig, const std::string& folder, bool quiet)
 {
     const double STEP = 1.4, NEAREST = 1.5, FARTHEST = 300.;        // of the window's reach
-    const char ADVICE[] = "; give --lengths or --positions";
     const double reach = reachOf(rig), depth = medianDepth(survey);
     if (!(reach > 0))
         throw Failure("nothing tells the scale: there is no window that would" + std::string(ADVICE));
     if (!(depth > 0))
         throw Failure("'" + folder + "': most of its points are behind its images: was it mirrored?");
     Trials trials = trialsOf(survey);
-    findFarPoints(survey, trials);
+    findPairs(survey, trials);
     std::vector<double> factors, errors;
     for (double range = NEAREST*reach; range < FARTHEST*reach; range *= STEP)
         factors.push_back(range/depth);
@@ -196,16 +241,16 @@ ScaleOfWindow scaleOfWindow(const Survey& survey, const RigModel& rig, const std
         errors.push_back(errorAt(factor, survey, rig, trials));
         progress.step();
     }
-    const int best = (int)(std::min_element(errors.begin(), errors.end()) - errors.begin());
-    if (!std::isfinite(errors[best]))
-        throw Failure("nothing tells the scale: at no distance of the scene do rays through the window meet" + std::string(ADVICE));
     ScaleOfWindow found;
-    found.factor = leastOf(factors, errors, best);
-    const double UNKNOWN = 0.3;             // of the length
-    const int a = trials.points[trials.a], b = trials.points[trials.b];
-    const double length = found.factor*norm(survey.model.points[a].X - survey.model.points[b].X);
-    found.asLength.list.push_back({a, b, length, UNKNOWN*length, 0});
-    found.asLength.objects = 1;
+    found.factor = bestOf(factors, errors, depth);
+    const double UNKNOWN = 10.;             // of a length: what it is told beforehand has no say
+    for (const auto& pair : trials.pairs)
+    {
+        const int a = trials.points[pair.first], b = trials.points[pair.second];
+        const double length = found.factor*norm(survey.model.points[a].X - survey.model.points[b].X);
+        found.asLengths.list.push_back({a, b, length, UNKNOWN*length, 0});
+    }
+    found.asLengths.objects = 1;
     return found;
 }
 

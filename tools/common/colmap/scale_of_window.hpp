@@ -13,11 +13,12 @@ namespace tools {
 struct ScaleOfWindow
 {
     double factor;              //!< the calibration's unit over that of the model
-    GivenLengths asLength;      //!< one between two points, so uncertain that the images have the say
+    GivenLengths asLengths;     //!< one object's, between points, so uncertain that the images have the say
 };
 
 /** A few images that share most points are adjusted with the scene at many distances; that where rays meet best tells the scale. How well
-is for the whole adjustment to say. Throws Failure where no distance has an answer, and without a window.
+is for the whole adjustment to say. Throws Failure where no distance has an answer, where the best is the nearest or the farthest tried, and
+without a window.
 @param folder of the model, for a sentence */
 ScaleOfWindow scaleOfWindow(const Survey& survey, const RigModel& rig, const std::string& folder, bool quiet);
 

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <unordered_map>
 
@@ -180,6 +181,40 @@ void requireSizes(const ColmapModel& model, const RigModel& rig, const std::vect
 }
 
 } // namespace
+
+std::vector<double> errorsOf(const std::vector<cv::Vec3i>& observations, const std::vector<cv::Point2d>& pixels, const RigModel& rig,
+                             const std::vector<cv::Vec3d>& rvecs, const std::vector<cv::Vec3d>& tvecs,
+                             const std::vector<cv::Point3d>& points)
+{
+    const size_t cameras = rig.cameras.size();
+    std::vector<double> errors(observations.size(), std::numeric_limits<double>::quiet_NaN());
+    std::vector<std::vector<int>> rows(rvecs.size()*cameras);
+    for (size_t i = 0; i < observations.size(); i++)
+        rows[observations[i][0]*cameras + observations[i][1]].push_back((int)i);
+    for (size_t image = 0; image < rows.size(); image++)
+    {
+        const size_t view = image/cameras, camera = image % cameras;
+        if (rows[image].empty() || std::isnan(rvecs[view][0]))
+            continue;
+        const RigidTransform pose = rig.extrinsics[camera]*transformOf(rvecs[view], tvecs[view]);
+        std::vector<cv::Point3d> shown;
+        std::vector<cv::Point2d> projected;
+        for (int row : rows[image])
+            shown.push_back(points[observations[row][2]]);
+        cv::refract::refractiveProjectPoints(shown, rotationVector(pose.R), pose.T, rig.cameras[camera], projected);
+        for (size_t k = 0; k < projected.size(); k++)
+            errors[rows[image][k]] = cv::norm(projected[k] - pixels[rows[image][k]]);
+    }
+    return errors;
+}
+
+std::vector<cv::Vec3d> vectorsOf(const std::vector<cv::Mat>& arrays)
+{
+    std::vector<cv::Vec3d> vectors;
+    for (const cv::Mat& array : arrays)
+        vectors.push_back(cv::Vec3d(array.ptr<double>()));
+    return vectors;
+}
 
 void Survey::leaveOut(int view)
 {

@@ -39,6 +39,15 @@ a rig of as many cameras, in its order
 Throws Failure where images are of no camera, of two, or of another size. */
 Survey surveyOf(const ColmapModel& model, const RigModel& rig, const std::vector<std::string>& globs, const std::string& folder);
 
+/** px: where each observation (view, camera, point) was seen from where it is projected; NaN: its view has no pose (NaN), its point no
+answer, or the camera does not see it. */
+std::vector<double> errorsOf(const std::vector<cv::Vec3i>& observations, const std::vector<cv::Point2d>& pixels, const RigModel& rig,
+                             const std::vector<cv::Vec3d>& rvecs, const std::vector<cv::Vec3d>& tvecs,
+                             const std::vector<cv::Point3d>& points);
+
+//! Of each a vector, as OpenCV gives poses.
+std::vector<cv::Vec3d> vectorsOf(const std::vector<cv::Mat>& arrays);
+
 //! Whether a name is what a pattern of * and ? means; * is for '/' too.
 bool matchesPattern(const std::string& name, const std::string& pattern);
 

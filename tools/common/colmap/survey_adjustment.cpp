@@ -27,14 +27,6 @@ std::vector<Mat> arraysOf(const std::vector<Vec3d>& vectors)
     return arrays;
 }
 
-std::vector<Vec3d> vectorsOf(const std::vector<Mat>& arrays)
-{
-    std::vector<Vec3d> vectors;
-    for (const Mat& array : arrays)
-        vectors.push_back(Vec3d(array.ptr<double>()));
-    return vectors;
-}
-
 //! What is known of positions holds near these poses; adjusted again from there it holds where they are.
 void adjust(const Survey& survey, const BundleStart& bundle, const SurveyStart& start, bool robust, SurveyAdjustment& result,
             std::vector<Point3d>& points, Mat& deviations)
@@ -96,32 +88,13 @@ double setErrors(const Survey& survey, SurveyAdjustment& result)
     const RigModel& rig = result.bundle.fit.rig;
     std::vector<double> squares(rig.cameras.size(), 0.);
     std::vector<int> counts(rig.cameras.size(), 0);
-    result.errors.assign(survey.observations.size(), NaN);
-    std::vector<std::vector<int>> rows(survey.views.size()*rig.cameras.size());
-    for (size_t i = 0; i < survey.observations.size(); i++)
-        rows[survey.observations[i][0]*rig.cameras.size() + survey.observations[i][1]].push_back((int)i);
-    for (size_t image = 0; image < rows.size(); image++)
-    {
-        const int view = (int)(image/rig.cameras.size()), camera = (int)(image % rig.cameras.size());
-        if (rows[image].empty() || !result.hasPose(view))
-            continue;
-        const RigidTransform pose = rig.extrinsics[camera]*result.poseOf(view);
-        std::vector<Point3d> points;
-        std::vector<Point2d> pixels;
-        for (int row : rows[image])
-            points.push_back(result.bundle.points[survey.observations[row][2]]);
-        refractiveProjectPoints(points, rotationVector(pose.R), pose.T, rig.cameras[camera], pixels);
-        for (size_t k = 0; k < pixels.size(); k++)
+    result.errors = errorsOf(survey.observations, survey.pixels, rig, result.rvecs, result.tvecs, result.bundle.points);
+    for (size_t i = 0; i < result.errors.size(); i++)
+        if (result.used[i])
         {
-            const int row = rows[image][k];
-            result.errors[row] = norm(pixels[k] - survey.pixels[row]);
-            if (result.used[row])
-            {
-                squares[camera] += result.errors[row]*result.errors[row];
-                counts[camera]++;
-            }
+            squares[survey.observations[i][1]] += result.errors[i]*result.errors[i];
+            counts[survey.observations[i][1]]++;
         }
-    }
     double all = 0.;
     for (size_t c = 0; c < squares.size(); c++)
     {

@@ -146,7 +146,7 @@ Similarity toMetric(const Survey& survey, const BundleStart& bundle, const std::
     }
     const ScaleOfWindow found = scaleOfWindow(survey, bundle.rig, folder, quiet);
     metric.s = found.factor;
-    start.lengths = found.asLength;
+    start.lengths = found.asLengths;
     start.scale = "the window alone";
     start.isScaleOfWindow = true;
     return metric;
