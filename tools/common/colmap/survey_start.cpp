@@ -83,18 +83,23 @@ Similarity ontoPositions(const Survey& survey, const std::map<int, KnownPosition
         meanFrom += centreOf(survey.model.images[images[position.first][0]].cam_from_world)/(double)positions.size();
         meanTo += position.second.center/(double)positions.size();
     }
-    Matx33d product = Matx33d::zeros();
-    double squares = 0.;
+    Matx33d product = Matx33d::zeros(), spread = Matx33d::zeros();
+    double squares = 0., variance = 0.;
     for (const auto& position : positions)
     {
         const Vec3d from = centreOf(survey.model.images[images[position.first][0]].cam_from_world) - meanFrom;
         product += (position.second.center - meanTo)*from.t();
+        spread += from*from.t();
         squares += from.dot(from);
+        variance += position.second.std*position.second.std/(double)positions.size();
     }
-    const SVD svd(product);
+    const SVD svd(product), ofImages(spread);
     const Vec3d w(svd.w.ptr<double>());
-    if (!(w[1] > 1e-6*w[0]))
-        throw Failure("--positions: the images were taken along a line, about which the scene may turn: give positions beside it, too");
+    // Beside the line, what is common to images and positions, and how far that may be chance.
+    const double TURN = 0.1, beside = w[1], chance = std::sqrt(variance*ofImages.w.at<double>(1));
+    if (!(TURN*beside > chance) || !(beside > 1e-6*w[0]))
+        throw Failure("--positions: the images were taken along a line, as far as std tells, about which the scene may turn: give positions "
+                      "beside it, too");
     Matx33d signs = Matx33d::eye();
     signs(2, 2) = determinant(svd.u)*determinant(svd.vt) < 0 ? -1. : 1.;
     Similarity onto;
@@ -176,6 +181,14 @@ void startPose(const Survey& survey, const RigModel& rig, const Similarity& metr
     poseInCamera1(rig, camera, rvec, tvec);
 }
 
+/** Radians of a pose of which only the place is known: so many that thousands of views together tell nothing of a turn, and so few that the
+place is not lost in rounding beside what a turn does to it. */
+double vagueTurn(double distance, double std)
+{
+    const double MOST = 30., DIGITS = 1e6;
+    return distance > 0. ? std::min(MOST, DIGITS*std/distance) : MOST;
+}
+
 } // namespace
 
 std::map<int, KnownPosition> readPositions(const std::string& path, const Survey& survey)
@@ -239,7 +252,6 @@ SurveyStart startSurvey(const Survey& survey, const BundleStart& bundle, const s
 
 std::vector<Mat> covariancesOfPoses(const SurveyStart& start, const std::vector<Vec3d>& rvecs, std::vector<Vec3d>& tvecs)
 {
-    const double UNKNOWN_TURN = 0.3;        // rad: the positions tell it far better, and a rotation vector is still one
     std::vector<Mat> all;
     if (start.positions.empty())
         return all;
@@ -253,6 +265,7 @@ std::vector<Mat> covariancesOfPoses(const SurveyStart& start, const std::vector<
         }
         // (rvec, centre) -> (rvec, tvec = -R centre)
         const Vec3d& C = known->second.center;
+        const double turn = vagueTurn(norm(C), known->second.std);
         Matx33d R;
         Mat jacobian;
         Rodrigues(rvecs[view], R, jacobian);
@@ -267,7 +280,7 @@ std::vector<Mat> covariancesOfPoses(const SurveyStart& start, const std::vector<
             }
         for (int k = 0; k < 3; k++)
         {
-            S(k, k) = UNKNOWN_TURN*UNKNOWN_TURN;
+            S(k, k) = turn*turn;
             S(3 + k, 3 + k) = known->second.std*known->second.std;
         }
         all.push_back(Mat(J*S*J.t(), true));
