@@ -74,13 +74,47 @@ struct Taken
     std::string moment;
 };
 
+int cameraCount(const ColmapRig& rig)
+{
+    return (int)std::count_if(rig.sensors.begin(), rig.sensors.end(), [](const ColmapSensor& s) { return s.type == COLMAP_CAMERA; });
+}
+
 //! The rig of the model with as many cameras; null: there is none.
 const ColmapRig* rigOf(const ColmapModel& model, int cameras)
 {
     for (const ColmapRig& rig : model.rigs)
-        if (std::count_if(rig.sensors.begin(), rig.sensors.end(), [](const ColmapSensor& s) { return s.type == COLMAP_CAMERA; }) == cameras)
+        if (cameraCount(rig) == cameras)
             return &rig;
     return nullptr;
+}
+
+/** Cameras in another order look elsewhere from elsewhere. The model's rig is in its own unit and seen through pinholes in water: only what
+is far off tells. Throws Failure. */
+void requireSameOrder(const ColmapRig& own, const RigModel& rig)
+{
+    const double TURN = 30.*CV_PI/180., BASE = 0.5;         // of the longest base line
+    std::vector<RigidTransform> places;
+    for (const ColmapSensor& sensor : own.sensors)
+        if (sensor.type == COLMAP_CAMERA && (sensor.isPlaced || &sensor == &own.sensors[0]))
+            places.push_back(sensor.isPlaced ? transformOf(sensor.sensor_from_rig) : RigidTransform());
+    if (places.size() != rig.cameras.size())
+        return;                             // COLMAP knows none of them
+    std::vector<cv::Vec3d> bases;
+    double longest = 0., calibrated = 0., turn = 0.;
+    for (size_t c = 1; c < places.size(); c++)
+    {
+        const RigidTransform place = fromTo(places[0], places[c]);
+        turn = std::max(turn, cv::norm(rotationVector(place.R*rig.extrinsics[c].R.t())));
+        bases.push_back(place.T);
+        longest = std::max(longest, cv::norm(place.T));
+        calibrated = std::max(calibrated, cv::norm(rig.extrinsics[c].T));
+    }
+    bool isSame = turn < TURN;
+    for (size_t c = 1; c < places.size() && longest > 0. && calibrated > 0.; c++)
+        isSame = isSame && cv::norm(bases[c - 1]/longest - rig.extrinsics[c].T/calibrated) < BASE;
+    if (!isSame)
+        throw Failure("the cameras of the model's rig are not beside each other as those of the calibration: in another order? Say with "
+                      "--images='GLOB' for each camera which images are its own");
 }
 
 std::vector<Taken> takenByRig(const ColmapModel& model, const ColmapRig& rig)
@@ -142,8 +176,31 @@ std::vector<Taken> takenByNames(const ColmapModel& model, const std::vector<std:
     return all;
 }
 
-std::vector<Taken> takenBy(const ColmapModel& model, int cameras, const std::vector<std::string>& globs, const std::string& folder)
+//! Two images of one camera are of two moments, and some of two cameras of one. Throws Failure.
+void requireMoments(const ColmapModel& model, const std::vector<Taken>& taken, size_t cameras)
 {
+    std::map<std::pair<std::string, int>, std::string> names;
+    std::map<std::string, int> moments;
+    bool isShared = false;
+    for (size_t i = 0; i < taken.size(); i++)
+    {
+        if (taken[i].camera < 0)
+            continue;
+        std::string& name = names[{taken[i].moment, taken[i].camera}];
+        if (!name.empty())
+            throw Failure(format("images '%s' and '%s' of camera %d are of one moment, by their names or by the model's frames: leave one out",
+                                 name.c_str(), model.images[i].name.c_str(), taken[i].camera + 1));
+        name = model.images[i].name;
+        isShared = isShared || ++moments[taken[i].moment] > 1;
+    }
+    if (cameras > 1 && !isShared)
+        throw Failure("no two cameras have an image of one moment: images of one moment have equal names or numbers in all cameras, and here "
+                      "they are like '" + model.images[0].name + "'");
+}
+
+std::vector<Taken> takenBy(const ColmapModel& model, const RigModel& calibrated, const std::vector<std::string>& globs, const std::string& folder)
+{
+    const int cameras = (int)calibrated.cameras.size();
     if (!globs.empty() && (int)globs.size() != cameras)
         throw Failure(format("--images is given %d time%s, and the calibration has %d camera%s: give it for each", (int)globs.size(),
                              globs.size() == 1 ? "" : "s", cameras, cameras == 1 ? "" : "s"));
@@ -153,8 +210,13 @@ std::vector<Taken> takenBy(const ColmapModel& model, int cameras, const std::vec
         if (!rig)
             throw Failure(format("the calibration has %d cameras, and '%s' no rig of as many: say with --images='GLOB' for each camera "
                                  "which images are its own", cameras, folder.c_str()));
+        requireSameOrder(*rig, calibrated);
         return takenByRig(model, *rig);
     }
+    const auto isOfSeveral = [](const ColmapRig& rig) { return cameraCount(rig) > 1; };
+    if (globs.empty() && std::any_of(model.rigs.begin(), model.rigs.end(), isOfSeveral))
+        throw Failure("the calibration has one camera, and '" + folder + "' a rig of several: say with --images='GLOB' which images are "
+                      "its own");
     return takenByNames(model, globs.empty() ? std::vector<std::string>{"*"} : globs);
 }
 
@@ -226,12 +288,12 @@ void Survey::leaveOut(int view)
         }
 }
 
-Survey surveyOf(const ColmapModel& model, const RigModel& rig, const std::vector<std::string>& globs, const std::string& folder)
+Survey surveyOf(ColmapModel model, const RigModel& rig, const std::vector<std::string>& globs, const std::string& folder)
 {
-    const std::vector<Taken> taken = takenBy(model, (int)rig.cameras.size(), globs, folder);
+    const std::vector<Taken> taken = takenBy(model, rig, globs, folder);
+    requireMoments(model, taken, rig.cameras.size());
     requireSizes(model, rig, taken);
     Survey survey;
-    survey.model = model;
     std::unordered_map<uint64_t, int> indexOf;
     for (size_t i = 0; i < model.points.size(); i++)
         indexOf[model.points[i].id] = (int)i;
@@ -257,6 +319,7 @@ Survey surveyOf(const ColmapModel& model, const RigModel& rig, const std::vector
                 survey.sources.push_back({(int)i, (int)k});
             }
     }
+    survey.model = std::move(model);
     if (survey.views.size() < 2)
         throw Failure(format("'%s' has %d image%s with a pose and %d points or more: at least two are needed", folder.c_str(),
                              survey.imageCount(), survey.imageCount() == 1 ? "" : "s", MIN_POINTS));
