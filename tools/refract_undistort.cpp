@@ -180,7 +180,11 @@ void addOptions(OptionParser& parser, Options& options)
 int undistortSurvey(const Options& options, const Calibration& calibration, const Command& command)
 {
     const ColmapModel model = readColmapModel(options.colmap);
-    checkPinholeImages(model, {options.calibration, command.settings()}, options.imageFolder, options.folder);
+    std::vector<std::string> inputs = {options.calibration, command.settings()};
+    for (bool isBinary : {true, false})
+        for (const std::string& file : colmapFilesOf(options.colmap, isBinary))
+            inputs.push_back(file);
+    checkPinholeImages(model, inputs, options.imageFolder, options.folder);
     const PinholeImages done = writePinholeImages(model, calibration, options.imageFolder, options.folder, command.quiet());
     if (!command.quiet())
         std::cout << cv::format("%d image%s written to %s/images, corrected at the depth of %zu pixels;\n", done.images,

@@ -119,6 +119,27 @@ TEST_CASE("A model of COLMAP is written as it was read", "[colmap]")
     CHECK(again.cameras[0].parameters == model.cameras[0].parameters);
 }
 
+TEST_CASE("A model of COLMAP takes the place of another in its folder", "[colmap]")
+{
+    const TemporaryFolder f;
+    saveBinary(f);
+    ColmapModel model = readColmapModel(f.path().string());
+    model.isBinary = false;
+    model.rigs.clear();
+    model.frames.clear();
+    model.points[0].X[0] = 77;
+    writeColmapModel(model, f.path().string());
+    const ColmapModel again = readColmapModel(f.path().string());
+    CHECK(again.points[0].X[0] == 77);
+    CHECK(again.rigs.empty());
+    model.isBinary = true;
+    saved(f, "rigs.bin", "of another");
+    saved(f, "frames.bin", "of another");
+    writeColmapModel(model, f.path().string());
+    CHECK(readColmapModel(f.path().string()).rigs.empty());
+    CHECK_FALSE(std::filesystem::exists(f / "cameras.txt"));
+}
+
 TEST_CASE("Poses of COLMAP are rotations there and back", "[colmap]")
 {
     CHECK(cv::norm(tools::transformOf(ColmapPose{{0.5, -0.5, 0.5, 0.5}, {1, 2, 3}}).R - cv::Matx33d(0, -1, 0, 0, 0, 1, -1, 0, 0)) < 1e-12);

@@ -301,8 +301,9 @@ void checkPinholeImages(const ColmapModel& model, const std::vector<std::string>
         outputs.push_back({"--out-dir", imageIn(joined(folder, "images"), image), OUTPUT_IN_FOLDER});
         all.push_back(imageIn(imageFolder, image));
     }
-    for (const std::string& file : colmapFilesOf(joined(folder, "sparse"), true))
-        outputs.push_back({"--out-dir", file, OUTPUT_IN_FOLDER});
+    for (bool isBinary : {true, false})
+        for (const std::string& file : colmapFilesOf(joined(folder, "sparse"), isBinary))
+            outputs.push_back({"--out-dir", file, OUTPUT_IN_FOLDER});
     checkOutputs(outputs, all);
 }
 

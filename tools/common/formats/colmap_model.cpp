@@ -188,8 +188,7 @@ template<typename T> void writeFile(const std::string& folder, const char* stem,
                                     const std::vector<T>& list)
 {
     std::string bytes = isBinary || comment.empty() ? "" : "# " + comment + "\n";
-    std::vector<T> copy = list;
-    records(*colmapWriter(bytes, isBinary), copy);
+    records(*colmapWriter(bytes, isBinary), const_cast<std::vector<T>&>(list));         // a writer changes nothing
     writeText(folder + "/" + stem + (isBinary ? ".bin" : ".txt"), bytes);
 }
 
@@ -244,6 +243,16 @@ std::string fileOf(const std::string& folder, const char* stem, bool isBinary)
 }
 
 const char* const STEMS[] = {"cameras", "images", "points3D", "rigs", "frames"};
+const size_t WITHOUT_RIGS = 3;
+
+//! What an earlier model left, of which readers would take part, or all of it.
+void removeStale(const ColmapModel& model, const std::string& folder)
+{
+    for (const char* stem : STEMS)
+        fs::remove(fileOf(folder, stem, !model.isBinary));
+    for (size_t i = WITHOUT_RIGS; i < std::size(STEMS) && model.rigs.empty(); i++)
+        fs::remove(fileOf(folder, STEMS[i], model.isBinary));
+}
 
 } // namespace
 
@@ -277,10 +286,12 @@ void writeColmapModel(const ColmapModel& model, const std::string& folder, const
     writeFile(folder, STEMS[0], model.isBinary, comment, model.cameras);
     writeFile(folder, STEMS[1], model.isBinary, comment, model.images);
     writeFile(folder, STEMS[2], model.isBinary, comment, model.points);
-    if (model.rigs.empty())
-        return;
-    writeFile(folder, STEMS[3], model.isBinary, comment, model.rigs);
-    writeFile(folder, STEMS[4], model.isBinary, comment, model.frames);
+    if (!model.rigs.empty())
+    {
+        writeFile(folder, STEMS[3], model.isBinary, comment, model.rigs);
+        writeFile(folder, STEMS[4], model.isBinary, comment, model.frames);
+    }
+    removeStale(model, folder);
 }
 
 std::vector<std::string> colmapFilesOf(const std::string& folder, bool isBinary)

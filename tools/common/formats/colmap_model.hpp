@@ -108,10 +108,11 @@ and, of a text, the line: where it is cut short, damaged or of another program, 
 nothing in it. Images without a pose are in it, see isPose(). */
 ColmapModel readColmapModel(const std::string& folder);
 
-//! Binary or text as the model says; the folder is made. The first line of texts is `comment`.
+/** Binary or text as the model says; the folder is made, and files of another model in it go: those of the other kind, and rigs and frames
+where this has none. The first line of texts is `comment`. */
 void writeColmapModel(const ColmapModel& model, const std::string& folder, const std::string& comment = "");
 
-//! The paths of what writeColmapModel() writes.
+//! The paths of a model's files; writeColmapModel() writes those of one kind, and removes the others.
 std::vector<std::string> colmapFilesOf(const std::string& folder, bool isBinary);
 
 //! A list of cameras in COLMAP's binary form. Throws Failure.
