@@ -12,6 +12,7 @@
 #include "match/moved_rig.hpp"
 
 #include <iostream>
+#include <sstream>
 
 static const char MANUAL[] = R"(Calibrates a rig behind its windows without a target, from points that several cameras saw: the ends of a
 wand that is waved, particles, any matches. Cameras, windows, R, T and points are one fit.
@@ -91,7 +92,8 @@ void addOptions(OptionParser& parser, Options& o)
     parser.addFlag("--no-window", o.bundle.noWindow, "start.yml has no glass_window, and there is none");
     parser.addNegation("--no-robust", o.robust, "every match is right; by default wrong ones are left out");
     parser.add("--pixel-sigma", o.pixelSigma, "noise of a pixel coordinate that the matches are known to have: far above it they "
-        "contradict the start (default: std1,std2,... of the matches, that of start.yml, or 2 px at most)").check(moreThanZero());
+        "contradict the start (default: std1,std2,... of the matches, that of start.yml, or 2 px at most; with --colmap not known)")
+        .check(moreThanZero());
     parser.add("--out", o.out, "the calibration to write (.yml, .xml, .json)").required();
     parser.add("--points-out", o.pointsOut, "points.csv to write");
     parser.add("--images", o.survey.images, "names of a camera's images in the model, a glob; once for each camera").oneAtATime()
@@ -190,18 +192,21 @@ int bundleSurvey(const Options& options, const Calibration& file, const Command&
     survey.pixelSigma = options.pixelSigma;
     survey.maxRms = options.maxRms;
     const BundleStart start = startWith(options, options.bundle, file);
-    const SurveyResult result = adjustColmap(survey, start, unitOf(options, file), command.quiet());
+    SurveyResult result = adjustColmap(survey, start, unitOf(options, file), command.quiet());
     if (!options.pointsOut.empty())
         writeText(options.pointsOut, surveyPointsCsv(result));
     if (!options.posesOut.empty())
         writeText(options.posesOut, surveyPosesCsv(result));
     if (!options.summary.empty())
         writeText(options.summary, surveyJson(result, command.line()));
+    std::ostringstream said;
+    printSurvey(said, result);
     if (!options.colmapOut.empty())
-        writeColmapModel(refractedModel(result), options.colmapOut, "refract_bundle: poses and points through windows, nearest pinholes");
+        writeColmapModel(refractedModel(result), options.colmapOut,
+                         "refract_bundle: poses and points through windows, nearest pinholes, less " + originText(result.start));
     writeCalibration(options.out, resultOf(options, result.adjustment.bundle, result.findings, file, result.unit, command));
     if (!command.quiet())
-        printSurvey(std::cout, result);
+        std::cout << said.str();
     return ended(options, result.adjustment.bundle, result.findings);
 }
 

@@ -211,8 +211,8 @@ double bestOf(const std::vector<double>& factors, const std::vector<double>& err
     if (!std::isfinite(errors[best]))
         throw Failure("nothing tells the scale: at no distance of the scene do rays through the window meet" + std::string(ADVICE));
     if (best == 0 || !std::isfinite(errors[best - 1]))
-        throw Failure(format("nothing tells the scale: rays through the window meet best with the scene at %.3g or nearer", factors[best]*depth)
-                      + ADVICE);
+        throw Failure(format("nothing tells the scale: rays through the window meet best with the scene at %.3g or nearer",
+                             factors[best]*depth) + ADVICE);
     if (best == last || !std::isfinite(errors[best + 1]))
         throw Failure(format("nothing tells the scale: rays through the window meet best with the scene at %.3g or farther",
                              factors[best]*depth) + ADVICE);

@@ -188,17 +188,18 @@ void requireMoments(const ColmapModel& model, const std::vector<Taken>& taken, s
             continue;
         std::string& name = names[{taken[i].moment, taken[i].camera}];
         if (!name.empty())
-            throw Failure(format("images '%s' and '%s' of camera %d are of one moment, by their names or by the model's frames: leave one out",
-                                 name.c_str(), model.images[i].name.c_str(), taken[i].camera + 1));
+            throw Failure(format("images '%s' and '%s' of camera %d are of one moment, by their names or by the model's frames: leave one "
+                                 "out", name.c_str(), model.images[i].name.c_str(), taken[i].camera + 1));
         name = model.images[i].name;
         isShared = isShared || ++moments[taken[i].moment] > 1;
     }
     if (cameras > 1 && !isShared)
-        throw Failure("no two cameras have an image of one moment: images of one moment have equal names or numbers in all cameras, and here "
-                      "they are like '" + model.images[0].name + "'");
+        throw Failure("no two cameras have an image of one moment: images of one moment have equal names or numbers in all cameras, and "
+                      "here they are like '" + model.images[0].name + "'");
 }
 
-std::vector<Taken> takenBy(const ColmapModel& model, const RigModel& calibrated, const std::vector<std::string>& globs, const std::string& folder)
+std::vector<Taken> takenBy(const ColmapModel& model, const RigModel& calibrated, const std::vector<std::string>& globs,
+                           const std::string& folder)
 {
     const int cameras = (int)calibrated.cameras.size();
     if (!globs.empty() && (int)globs.size() != cameras)

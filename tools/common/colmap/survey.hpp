@@ -18,7 +18,7 @@ struct Survey
     ColmapModel model;                          //!< pinholes in water, bent, in any unit
     std::vector<int> cameraOf, viewOf;          //!< of each of its images; -1: left out
     std::vector<std::string> views;             //!< one a moment
-    std::vector<std::string> leftOut;           //!< names of images without a pose, with fewer than MIN_POINTS points, or of which no point holds
+    std::vector<std::string> leftOut;           //!< names of images without a pose, with fewer than MIN_POINTS points, or none that holds
 
     std::vector<cv::Vec3i> observations;        //!< view, camera, index of the point
     std::vector<cv::Point2d> pixels;            //!< raw, of each of them
@@ -36,8 +36,8 @@ const int MIN_POINTS = 6;       //!< of an image, to have a pose
 /** @param globs one for each camera of the rig, of names of images; none for a rig of one camera, which took all, and for a model that has
 a rig of as many cameras, in its order
 @param folder of the model, for a sentence
-Throws Failure where images are of no camera, of two, or of another size, where two of a camera are of one moment or no two of a rig are, and
-where the model's rig is not as the calibration's. */
+Throws Failure where images are of no camera, of two, or of another size, where two of a camera are of one moment or no two of a rig are,
+and where the model's rig is not as the calibration's. */
 Survey surveyOf(ColmapModel model, const RigModel& rig, const std::vector<std::string>& globs, const std::string& folder);
 
 /** px: where each observation (view, camera, point) was seen from where it is projected; NaN: its view has no pose (NaN), its point no

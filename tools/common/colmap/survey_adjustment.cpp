@@ -159,7 +159,8 @@ void setAngles(const Survey& survey, SurveyAdjustment& result)
                 least = std::min(least, directions[i][a].dot(directions[i][b]));
         if (std::isfinite(result.bundle.points[i].x))
             result.angles[i] = std::acos(std::min(1., least))*180./CV_PI;
-        result.largeErrors += norm(result.bundle.sigma[i]) > 0.1*nearest[i];
+        result.isVague.push_back(norm(result.bundle.sigma[i]) > 0.1*nearest[i]);
+        result.largeErrors += result.isVague[i];
     }
 }
 

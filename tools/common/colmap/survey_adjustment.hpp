@@ -19,8 +19,9 @@ struct SurveyAdjustment
     std::vector<double> errors;                 //!< of each observation, px: where it was seen from where it is projected; NaN: no point
     std::vector<int> images;                    //!< of each point: how many observations are used
     std::vector<double> angles;                 //!< of each point: the largest between its rays, degrees
-    double scaleStd = 0.;                       //!< relative, of the distance that is known best between two places of the rig; of positions: by them
-    int largeErrors = 0;                        //!< points whose +- is more than a tenth of their distance
+    double scaleStd = 0.;                       //!< relative, of the distance known best between two places of the rig; or by positions
+    std::vector<char> isVague;                  //!< of each point: its +- is more than a tenth of its distance
+    int largeErrors = 0;                        //!< how many are
 
     bool hasPose(int view) const { return rvecs[view] == rvecs[view]; }
     RigidTransform poseOf(int view) const { return tools::transformOf(rvecs[view], tvecs[view]); }

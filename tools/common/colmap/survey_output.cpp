@@ -60,6 +60,24 @@ RigidTransform placed(const SurveyResult& result, int view)
     return {pose.R, pose.T - pose.R*result.start.origin};
 }
 
+//! Of its translation: T of the fit less R of the origin, which turns with the pose.
+Matx33d placedCovariance(const SurveyResult& result, int view)
+{
+    Mat jacobian;
+    Matx33d R;
+    Rodrigues(result.adjustment.rvecs[view], R, jacobian);
+    Matx<double, 3, 6> J;
+    for (int r = 0; r < 3; r++)
+        for (int k = 0; k < 3; k++)
+        {
+            J(r, k) = 0.;
+            for (int c = 0; c < 3; c++)
+                J(r, k) -= jacobian.at<double>(k, 3*r + c)*result.start.origin[c];
+            J(r, 3 + k) = r == k;
+        }
+    return J*Matx66d(result.adjustment.viewCovariances[view].ptr<double>())*J.t();
+}
+
 std::vector<std::string> withoutAnswer(const SurveyResult& result)
 {
     std::vector<std::string> ids;
@@ -107,12 +125,43 @@ void addRig(const SurveyResult& result, ColmapModel& model)
         if (result.adjustment.hasPose((int)view))
         {
             frameOf[view] = (int)model.frames.size();
-            model.frames.push_back({(uint32_t)view + 1, 1, colmapPoseOf(placed(result, (int)view)), {}});
+            model.frames.push_back({(uint32_t)view + 1, 1, colmapPoseOf(result.adjustment.poseOf((int)view)), {}});
         }
     for (size_t i = 0; i < result.survey.viewOf.size(); i++)
         if (result.survey.viewOf[i] >= 0)
             model.frames[frameOf[result.survey.viewOf[i]]].data.push_back({COLMAP_CAMERA, (uint32_t)result.survey.cameraOf[i] + 1,
-                                                                  result.survey.model.images[i].id});
+                                                                  model.images[i].id});
+}
+
+//! Which pixel of which image is of which point, of what is used and known well enough to be told by a model without +-.
+void addSights(const SurveyResult& result, ColmapModel& model)
+{
+    for (size_t k = 0; k < result.adjustment.used.size(); k++)
+    {
+        const int index = result.survey.observations[k][2];
+        if (!result.adjustment.used[k] || result.adjustment.isVague[index])
+            continue;
+        ColmapImage& image = model.images[result.survey.sources[k][0]];
+        ColmapPoint& point = model.points[index];
+        image.pixels[result.survey.sources[k][1]].point = point.id;
+        point.track.push_back({image.id, (uint32_t)result.survey.sources[k][1]});
+        point.error += result.adjustment.errors[k];
+    }
+    for (ColmapPoint& point : model.points)
+        if (!point.track.empty())
+            point.error /= (double)point.track.size();
+}
+
+//! Points that nothing shows, images without a pose.
+void leaveOut(const SurveyResult& result, ColmapModel& model)
+{
+    const auto isUnseen = [](const ColmapPoint& point) { return point.track.empty(); };
+    model.points.erase(std::remove_if(model.points.begin(), model.points.end(), isUnseen), model.points.end());
+    size_t kept = 0;
+    for (size_t i = 0; i < model.images.size(); i++)
+        if (result.survey.viewOf[i] >= 0 && kept++ != i)
+            model.images[kept - 1] = std::move(model.images[i]);
+    model.images.resize(kept);
 }
 
 } // namespace
@@ -136,6 +185,11 @@ std::vector<NearestPinhole> pinholesOf(const Survey& survey, const SurveyAdjustm
 std::string scaleText(const SurveyStart& start, const SurveyAdjustment& adjustment)
 {
     return start.scale + format(", +- %.2g %%", 100.*adjustment.scaleStd);
+}
+
+std::string originText(const SurveyStart& start)
+{
+    return format("%.12g, %.12g, %.12g", start.origin[0], start.origin[1], start.origin[2]);
 }
 
 std::string surveyPointsCsv(const SurveyResult& result)
@@ -168,7 +222,7 @@ std::string surveyPosesCsv(const SurveyResult& result)
         putNumbers(csv, result.adjustment.rvecs[view]*DEGREES);
         putNumbers(csv, pose.T);
         putNumbers(csv, stdsOf(covariance.get_minor<3, 3>(0, 0))*DEGREES);
-        putNumbers(csv, stdsOf(covariance.get_minor<3, 3>(3, 3)));
+        putNumbers(csv, stdsOf(placedCovariance(result, (int)view)));
         putNumbers(csv, pose.inverse(Vec3d()));
         putNumbers(csv, stdsOf(result.adjustment.centreCovariance((int)view)));
         csv << '\n';
@@ -176,50 +230,33 @@ std::string surveyPosesCsv(const SurveyResult& result)
     return csv.str();
 }
 
-ColmapModel refractedModel(const SurveyResult& result)
+ColmapModel refractedModel(SurveyResult& result)
 {
     const SurveyAdjustment& adjustment = result.adjustment;
-    const RigModel& rig = adjustment.bundle.fit.rig;
-    ColmapModel model = result.survey.model;
+    ColmapModel model = std::move(result.survey.model);
     model.cameras.clear();
     for (size_t c = 0; c < result.pinholes.size(); c++)
         model.cameras.push_back(cameraOf(result.pinholes[c], (int)c));
+    addRig(result, model);
     for (size_t i = 0; i < model.images.size(); i++)
     {
         if (result.survey.viewOf[i] < 0)
             continue;
         const int camera = result.survey.cameraOf[i];
         model.images[i].camera = (uint32_t)camera + 1;
-        model.images[i].cam_from_world = colmapPoseOf(rig.extrinsics[camera]*placed(result, result.survey.viewOf[i]));
+        model.images[i].cam_from_world = colmapPoseOf(adjustment.bundle.fit.rig.extrinsics[camera]
+                                                      *adjustment.poseOf(result.survey.viewOf[i]));
         for (ColmapPixel& pixel : model.images[i].pixels)
             pixel.point = NO_COLMAP_POINT;
     }
     for (size_t i = 0; i < model.points.size(); i++)
     {
-        model.points[i].X = Vec3d(adjustment.bundle.points[i]) + result.start.origin;
+        model.points[i].X = adjustment.bundle.points[i];
         model.points[i].track.clear();
         model.points[i].error = 0.;
     }
-    for (size_t k = 0; k < adjustment.used.size(); k++)
-    {
-        if (!adjustment.used[k])
-            continue;
-        ColmapImage& image = model.images[result.survey.sources[k][0]];
-        ColmapPoint& point = model.points[result.survey.observations[k][2]];
-        image.pixels[result.survey.sources[k][1]].point = point.id;
-        point.track.push_back({image.id, (uint32_t)result.survey.sources[k][1]});
-        point.error += adjustment.errors[k];
-    }
-    std::vector<ColmapImage> kept;
-    for (size_t i = 0; i < model.images.size(); i++)
-        if (result.survey.viewOf[i] >= 0)
-            kept.push_back(model.images[i]);
-    model.images = kept;
-    const auto isLeftOut = [](const ColmapPoint& point) { return point.track.empty() || std::isnan(point.X[0]); };
-    model.points.erase(std::remove_if(model.points.begin(), model.points.end(), isLeftOut), model.points.end());
-    for (ColmapPoint& point : model.points)
-        point.error /= (double)point.track.size();
-    addRig(result, model);
+    addSights(result, model);
+    leaveOut(result, model);
     return model;
 }
 
@@ -227,6 +264,7 @@ std::string surveyJson(const SurveyResult& result, const std::string& command)
 {
     Json json = adjustmentJson(result.adjustment.bundle, result.findings, command, result.unit);
     json.set("scale_std", result.adjustment.scaleStd);
+    json.set("colmap_origin", std::vector<double>(result.start.origin.val, result.start.origin.val + 3));
     json.set("images", result.survey.imageCount());
     json.set("images_left_out", result.survey.leftOut);
     json.set("views", result.survey.views.size());
@@ -249,6 +287,8 @@ void printSurvey(std::ostream& out, const SurveyResult& result)
     out << result.findings.verdict()
         << format(": %.3g px RMS, noise %.3g px a coordinate, %.0f degrees of freedom\n", fit.rms, fit.sigma, fit.dof);
     out << fittedLine("scale: ", {result.findings.scale}) << "\n";
+    if (norm(result.start.origin) > 0)
+        out << "the model for COLMAP is less the origin " << originText(result.start) << "\n";
     printCorrections(out, result.findings, result.unit);
     const Vec3d places = medianPlaceStd(adjustment), points = medianStd(adjustment.bundle.sigma);
     out << format("%d images, x, y, z +- %.2g, %.2g, %.2g (median)\n", result.survey.imageCount(), places[0], places[1], places[2]);

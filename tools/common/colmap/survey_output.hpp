@@ -36,9 +36,14 @@ std::string surveyPointsCsv(const SurveyResult& result);
 //! view,rx_deg,ry_deg,rz_deg,tx,ty,tz and the std of each, then where camera 1 was, and its std.
 std::string surveyPosesCsv(const SurveyResult& result);
 
-/** The model with refined poses and points; its pixels are the raw ones that were used, its cameras (1, 2, ... as in the calibration)
-the nearest pinholes. A point's error is that of the cameras with their windows. */
-ColmapModel refractedModel(const SurveyResult& result);
+//! "x, y, z" of the start's origin.
+std::string originText(const SurveyStart& start);
+
+/** The model with refined poses and points, less the start's origin: programs that take it reckon with few digits. Of its pixels those have
+points that were used, its cameras (1, 2, ... as in the calibration) are the nearest pinholes. A point's error is that of the cameras with
+their windows; points whose +- is more than a tenth of their distance are left out. The survey's model becomes
+it, for want of memory. */
+ColmapModel refractedModel(SurveyResult& result);
 
 std::string surveyJson(const SurveyResult& result, const std::string& command);
 

@@ -98,8 +98,8 @@ Similarity ontoPositions(const Survey& survey, const std::map<int, KnownPosition
     // Beside the line, what is common to images and positions, and how far that may be chance.
     const double TURN = 0.1, beside = w[1], chance = std::sqrt(variance*ofImages.w.at<double>(1));
     if (!(TURN*beside > chance) || !(beside > 1e-6*w[0]))
-        throw Failure("--positions: the images were taken along a line, as far as std tells, about which the scene may turn: give positions "
-                      "beside it, too");
+        throw Failure("--positions: the images were taken along a line, as far as std tells, about which the scene may turn: give "
+                      "positions beside it, too");
     Matx33d signs = Matx33d::eye();
     signs(2, 2) = determinant(svd.u)*determinant(svd.vt) < 0 ? -1. : 1.;
     Similarity onto;
