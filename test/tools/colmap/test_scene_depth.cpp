@@ -36,6 +36,32 @@ TEST_CASE("Depth between the points of a plane is that of the plane", "[colmap]"
     CHECK(worst < 1e-9);
 }
 
+TEST_CASE("One point near the camera does not bend the depth of the others", "[colmap]")
+{
+    CAPTURE(scenes::seed());
+    scenes::Random random(72);
+    const Size size(320, 250);
+    std::vector<Point2d> pixels;
+    std::vector<double> depths;
+    for (int i = 0; i < 60; i++)
+    {
+        pixels.push_back({random.uniform(0, 319), random.uniform(0, 249)});
+        depths.push_back(1/(1e-3 + 1e-6*pixels.back().x));
+    }
+    for (const Point2d& near : {Point2d(-1, 0), Point2d(0.4, -0.3)})        // beside another, as if it were one keypoint
+    {
+        pixels.push_back(pixels[20] + near);
+        depths.push_back(depths[20]);
+    }
+    pixels.push_back(pixels[20]);
+    depths.push_back(1e-7);
+    pixels.push_back({1e300, -1e300});
+    depths.push_back(1000);
+    const Mat_<double> depth = tools::sceneDepth(pixels, depths, size);
+    for (int x : {20, 160, 300})
+        CHECK(depth(125, x) == Approx(1/(1e-3 + 1e-6*x)).epsilon(0.02));
+}
+
 TEST_CASE("Depth follows what stands out of a plane, and stays between the points", "[colmap]")
 {
     const Size size(320, 256);

@@ -161,18 +161,19 @@ void toPixels(const Matx33d& K, std::vector<Point2d>& points)
 
 bool isInside(const Point2d& p, Size size) { return p.x >= 0 && p.y >= 0 && p.x <= size.width - 1 && p.y <= size.height - 1; }
 
-//! px: how far points are off that take no part, one half by the other.
+//! px: how far points are off that take no part, one half by the other. What is in one cell is in one half: the same point may be there twice.
 void addErrors(const Seen& seen, const Pinhole& pinhole, Size size, std::vector<double>& errors)
 {
     if (seen.depths.size() < FEW)
         return;
+    const auto isOdd = [](const Point& cell) { return (cell.x + cell.y) % 2 != 0; };
     for (size_t half = 0; half < 2; half++)
     {
         std::vector<Point2d> of, tested, raw, moved;
         std::vector<double> depths, truths, interpolated;
         for (size_t i = 0; i < seen.depths.size(); i++)
         {
-            if (i % 2 == half)
+            if (isOdd(depthCellOf(seen.pinhole[i], size)) == (half == 1))
             {
                 of.push_back(seen.pinhole[i]);
                 depths.push_back(seen.depths[i]);
@@ -183,6 +184,8 @@ void addErrors(const Seen& seen, const Pinhole& pinhole, Size size, std::vector<
                 truths.push_back(seen.depths[i]);
             }
         }
+        if (of.empty() || tested.empty())
+            continue;
         const Mat_<double> depth = sceneDepth(of, depths, size);
         for (const Point2d& p : tested)
             interpolated.push_back(depth(cvRound(p.y), cvRound(p.x)));

@@ -14,21 +14,35 @@ namespace {
 
 const int CELL = 16;            // px
 
-//! 1/z = p0 + p1 x + p2 y, where x, y are -1 ... 1; of few points it is the mean.
-Vec3d planeOf(const std::vector<Point2d>& pixels, const std::vector<double>& depths, Size size)
+double median(std::vector<double> values)
 {
-    const int FEW = 8, count = (int)pixels.size();
-    Mat A(count, 3, CV_64F), b(count, 1, CV_64F), solution;
+    std::nth_element(values.begin(), values.begin() + values.size()/2, values.end());
+    return values[values.size()/2];
+}
+
+/** 1/z = p0 + p1 x + p2 y, where x, y are -1 ... 1; of few points it is their median. Points far off it have little say: a wrong one near the
+camera has a 1/z above all others. */
+Vec3d planeOf(const std::vector<Point2d>& pixels, const std::vector<double>& inverses, Size size)
+{
+    const int FEW = 8, ROUNDS = 10, count = (int)pixels.size();
+    const Vec3d start(median(inverses), 0., 0.);
+    if (count < FEW)
+        return start;
+    Mat A(count, 3, CV_64F), b(inverses, true), residuals, solution = Mat(start, true);
     for (int i = 0; i < count; i++)
     {
         A.at<double>(i, 0) = 1.;
         A.at<double>(i, 1) = 2.*pixels[i].x/size.width - 1.;
         A.at<double>(i, 2) = 2.*pixels[i].y/size.height - 1.;
-        b.at<double>(i) = 1./depths[i];
     }
-    if (count < FEW)
-        return {mean(b)[0], 0., 0.};
-    solve(A, b, solution, DECOMP_SVD);
+    for (int round = 0; round < ROUNDS; round++)
+    {
+        residuals = cv::abs(A*solution - b);
+        const double scale = median(std::vector<double>(residuals.begin<double>(), residuals.end<double>()));
+        Mat weights = 1./(residuals + std::max(scale, 1e-9*std::abs(start[0])));
+        cv::sqrt(weights, weights);
+        solve(A.mul(repeat(weights, 1, 3)), b.mul(weights), solution, DECOMP_SVD);
+    }
     return Vec3d(solution.ptr<double>());
 }
 
@@ -59,18 +73,40 @@ Mat filled(const Mat& sums, const Mat& weights)
 
 } // namespace
 
-Mat_<double> sceneDepth(const std::vector<Point2d>& pixels, const std::vector<double>& depths, Size size)
+Point depthCellOf(const Point2d& pixel, Size size)
 {
-    const Vec3d plane = planeOf(pixels, depths, size);
+    const auto clamped = [](double x, int length) { return (int)std::min(std::max(x, 0.), length - 1.)/CELL; };
+    return {clamped(pixel.x, size.width), clamped(pixel.y, size.height)};
+}
+
+Mat_<double> sceneDepth(const std::vector<Point2d>& all, const std::vector<double>& depths, Size size)
+{
+    // What is far beside the image is wrong, and would hold the plane.
+    std::vector<Point2d> pixels;
+    std::vector<double> inverses;
+    for (size_t i = 0; i < all.size(); i++)
+        if (std::abs(all[i].x) < 2.*size.width && std::abs(all[i].y) < 2.*size.height)
+        {
+            pixels.push_back(all[i]);
+            inverses.push_back(1./depths[i]);
+        }
+    if (pixels.empty())
+        return Mat_<double>(size, median(depths));
+    const Vec3d plane = planeOf(pixels, inverses, size);
     const Size cells((size.width + CELL - 1)/CELL, (size.height + CELL - 1)/CELL);
-    Mat_<double> sums(cells, 0.), weights(cells, 0.);
+    std::vector<std::vector<double>> ofCells((size_t)cells.area());
     for (size_t i = 0; i < pixels.size(); i++)
     {
-        const int x = std::min(std::max((int)pixels[i].x/CELL, 0), cells.width - 1);
-        const int y = std::min(std::max((int)pixels[i].y/CELL, 0), cells.height - 1);
-        sums(y, x) += 1./depths[i] - valueAt(plane, pixels[i].x, pixels[i].y, size);
-        weights(y, x) += 1.;
+        const Point cell = depthCellOf(pixels[i], size);
+        ofCells[cell.y*cells.width + cell.x].push_back(inverses[i] - valueAt(plane, pixels[i].x, pixels[i].y, size));
     }
+    Mat_<double> sums(cells, 0.), weights(cells, 0.);
+    for (int i = 0; i < cells.area(); i++)
+        if (!ofCells[i].empty())
+        {
+            weights(i/cells.width, i % cells.width) = (double)ofCells[i].size();
+            sums(i/cells.width, i % cells.width) = (double)ofCells[i].size()*median(ofCells[i]);
+        }
     Mat off;
     resize(filled(sums, weights), off, Size(cells.width*CELL, cells.height*CELL), 0, 0, INTER_LINEAR);
     const auto range = std::minmax_element(depths.begin(), depths.end());
