@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 using namespace cv;
 using namespace cv::refract;
@@ -109,12 +110,28 @@ Similarity ontoPositions(const Survey& survey, const std::map<int, KnownPosition
     return onto;
 }
 
+//! Of a million points only those that the file names are looked up.
 GivenLengths lengthsOf(const Survey& survey, const std::string& path, const std::string& folder)
 {
+    const CsvTable table(path, {"id1", "id2", "length", "std"}, "a table of known lengths");
+    std::set<std::string> named;
+    for (const CsvTable::Row& row : table.rows())
+        named.insert({table.text(row, "id1"), table.text(row, "id2")});
     Matches names;
-    for (const ColmapPoint& point : survey.model.points)
-        names.names.push_back({"", std::to_string(point.id)});
-    return readLengths(path, folder, names);
+    std::vector<int> indices;
+    for (size_t i = 0; i < survey.model.points.size(); i++)
+        if (named.count(std::to_string(survey.model.points[i].id)))
+        {
+            names.names.push_back({"", std::to_string(survey.model.points[i].id)});
+            indices.push_back((int)i);
+        }
+    GivenLengths lengths = readLengths(path, folder, names);
+    for (GivenLength& length : lengths.list)
+    {
+        length.a = indices[length.a];
+        length.b = indices[length.b];
+    }
+    return lengths;
 }
 
 //! Less the mean of positions: survey coordinates are large.

@@ -9,6 +9,7 @@
 
 #include <opencv2/imgcodecs.hpp>
 #include <algorithm>
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -64,9 +65,15 @@ void keepFromOthers(const Output& output, const std::string& name)
 void checkOutputs(const std::vector<Output>& outputs, const std::vector<std::string>& inputs)
 {
     std::map<std::string, std::string> read;        // canonical name -> as the caller wrote it
+    std::multimap<std::uintmax_t, std::string> readOfSize;          // one file has one size: few are compared where there are thousands
+    const auto sizeOf = [](const std::string& path) {
+        std::error_code ignored;
+        return fs::file_size(path, ignored);
+    };
     for (const std::string& input : inputs)
         for (const std::string& file : input.find("%d") != std::string::npos ? numberedFiles(input) : matchingFiles(input))
-            read[canonical(file)] = file;
+            if (read.insert({canonical(file), file}).second)
+                readOfSize.insert({sizeOf(file), file});
     std::map<std::string, const Output*> written;
     for (const Output& output : outputs)
     {
@@ -79,11 +86,12 @@ void checkOutputs(const std::vector<Output>& outputs, const std::vector<std::str
             continue;
         }
         const std::string name = canonical(output.path);
-        const auto isHardLink = [&](const std::pair<const std::string, std::string>& input) {
+        const auto isHardLink = [&](const std::pair<const std::uintmax_t, std::string>& input) {
             std::error_code ignored;
             return fs::equivalent(input.second, output.path, ignored);
         };
-        if (read.count(name) || (fs::exists(output.path) && std::any_of(read.begin(), read.end(), isHardLink)))
+        const auto alike = readOfSize.equal_range(fs::exists(output.path) ? sizeOf(output.path) : 0);
+        if (read.count(name) || (fs::exists(output.path) && std::any_of(alike.first, alike.second, isHardLink)))
             throw Failure(output.option + ": '" + output.path + "' is one of the files to read and would be overwritten: name "
                           "another");
         const Output*& other = written[name];
