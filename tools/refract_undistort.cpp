@@ -49,7 +49,7 @@ namespace fs = std::filesystem;
 
 struct Options
 {
-    std::string calibration, folder, depth, plane, channels, colmap, imageFolder;
+    std::string calibration, folder, depth, plane, channels, colmap, imageFolder, summary;
     std::vector<std::string> sources;
     int camera = 1;
     bool noWindow = false;
@@ -174,6 +174,7 @@ void addOptions(OptionParser& parser, Options& options)
     for (const Option& other : {images, depth, plane, channels, camera})
         colmap.excludes(other);
     colmap.needs(parser.add("--image-dir", options.imageFolder, "folder of the images that the model names").needs(colmap));
+    parser.add("--summary", options.summary, "JSON file with what is said of --colmap").needs(colmap);
     parser.addFlag("--no-window", options.noWindow, "calib.yml has no glass_window, and there is none");
 }
 
@@ -184,8 +185,11 @@ int undistortSurvey(const Options& options, const Calibration& calibration, cons
     for (bool isBinary : {true, false})
         for (const std::string& file : colmapFilesOf(options.colmap, isBinary))
             inputs.push_back(file);
+    checkOutputs({{"--summary", options.summary, OUTPUT_TEXT}}, inputs);
     checkPinholeImages(model, inputs, options.imageFolder, options.folder);
     const PinholeImages done = writePinholeImages(model, calibration, options.imageFolder, options.folder, command.quiet());
+    if (!options.summary.empty())
+        writeText(options.summary, pinholeImagesJson(done, command.line()));
     if (!command.quiet())
         std::cout << cv::format("%d image%s written to %s/images, corrected at the depth of %zu pixels;\n", done.images,
                                 done.images == 1 ? "" : "s", options.folder.c_str(), done.points)

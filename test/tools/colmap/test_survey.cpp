@@ -106,6 +106,32 @@ TEST_CASE("Moments of a rig are told by names, once in each camera", "[colmap]")
     CHECK_THAT(refusalOf(twice, 2), Contains("images 'l/2.png' and 'l/3.png' of camera 1 are of one moment"));
 }
 
+TEST_CASE("The place that is known of a view is that of its camera", "[colmap]")
+{
+    SurveyStart start;
+    const Vec3d rvec(0.4, -0.7, 1.1), place(300, -200, 150);
+    start.positions[0] = {place, 5.};
+    std::vector<Vec3d> rvecs = {rvec}, tvecs = {{}};
+    const Matx66d covariance(covariancesOfPoses(start, rvecs, tvecs)[0].ptr<double>());
+    const auto centre = [&](Vec3d r, Vec3d t) { return tools::transformOf(r, t).inverse(Vec3d()); };
+    CHECK(norm(centre(rvec, tvecs[0]) - place) < 1e-9);
+    Matx<double, 3, 6> J;
+    const double STEP = 1e-5;
+    for (int k = 0; k < 6; k++)
+    {
+        Vec3d r[2] = {rvec, rvec}, t[2] = {tvecs[0], tvecs[0]};
+        for (int side = 0; side < 2; side++)
+            (k < 3 ? r[side] : t[side])[k % 3] += side ? STEP : -STEP;
+        const Vec3d slope = (centre(r[1], t[1]) - centre(r[0], t[0]))*(0.5/STEP);
+        for (int i = 0; i < 3; i++)
+            J(i, k) = slope[i];
+    }
+    const Matx33d ofPlace = J*covariance*J.t();
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            CHECK(ofPlace(i, j) == Approx(i == j ? 25. : 0.).margin(0.05));
+}
+
 TEST_CASE("What is known of a view's place says nothing of its turn", "[colmap]")
 {
     SurveyStart start;

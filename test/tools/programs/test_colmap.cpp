@@ -48,15 +48,16 @@ std::string numbers(const std::vector<double>& list)
 //! One camera, or two beside each other, over a relief; and what COLMAP makes of it: bent, smaller, turned.
 struct Network
 {
-    explicit Network(unsigned salt, int cameras = 1, double wrong = 0.) : random(salt)
+    //! @param lost a view that COLMAP registered wrongly; -1: none. @param window its size
+    explicit Network(unsigned salt, int cameras = 1, double wrong = 0., int lost = -1, double window = 1.) : random(salt)
     {
         const Matx33d K(800, 0, 319.5, 0, 800, 239.5, 0, 0, 1);
         for (int c = 0; c < cameras; c++)
         {
-            GlassWindow thought(Vec3d(0.03 - 0.05*c, -0.02, 1), 10, 1.49, 40, 1.333), real = thought;
+            GlassWindow thought(Vec3d(0.03 - 0.05*c, -0.02, 1), 10*window, 1.49, 40*window, 1.333), real = thought;
             real.normal = normalize(real.normal + Vec3d(random.normal(0.02), random.normal(0.02), 0));
-            real.distance += random.normal(1);
-            real.thickness[0] += random.normal(0.1);
+            real.distance += random.normal(1)*window;
+            real.thickness[0] += random.normal(0.1)*window;
             real.index[0] += random.normal(0.001);
             real.outerIndex += random.normal(0.001);
             real.wedge = {Vec2d(random.normal(CV_PI/10800), random.normal(CV_PI/10800))};
@@ -70,7 +71,7 @@ struct Network
         for (int i = 0; i < 420; i++)
             points.push_back({random.uniform(-460, 460), random.uniform(-330, 330), random.uniform(-40, 40)});
         for (int view = 0; view < 18; view++)
-            look(view, wrong);
+            look(view, view == lost ? 1. : wrong);
     }
 
     void look(int view, double wrong)
@@ -294,6 +295,54 @@ TEST_CASE("Lengths, a base line or the window tell the scale of a model", "[tool
     }
 }
 
+TEST_CASE("A window that tells no scale is not said to tell one", "[tools][bundle][colmap]")
+{
+    for (unsigned salt : {760, 761, 762})
+    {
+        Network network(salt, 1, 0, -1, 0.02);
+        const TemporaryFolder f;
+        network.write(f);
+        const ToolResult result = survey(f, "");
+        CAPTURE(scenes::seed(), salt, result.out, result.err);
+        if (result.code == 1)
+        {
+            CHECK(mentions(result.err, "nothing tells the scale"));
+            continue;
+        }
+        const double std = nlohmann::json::parse(readFile(f / "summary.json"))["scale_std"];
+        std::vector<double> ratios;
+        const auto table = tableOf(f / "points.csv");
+        for (const auto& a : table)
+            for (const auto& b : table)
+                if (a.first < b.first && a.second[8] == 0 && b.second[8] == 0)
+                    ratios.push_back(norm(Vec3d(a.second.data()) - Vec3d(b.second.data()))
+                                     /norm(network.points[std::atoi(a.first.c_str()) - 1] - network.points[std::atoi(b.first.c_str()) - 1]));
+        std::nth_element(ratios.begin(), ratios.begin() + ratios.size()/2, ratios.end());
+        const double off = std::log(ratios[ratios.size()/2]);
+        CAPTURE(off, std);
+        CHECK(std::abs(off) < 4*std);
+        CHECK(mentions(result.out, "hardly determined: the scale"));
+    }
+}
+
+TEST_CASE("A view of which every observation is wrong is left out by name", "[tools][bundle][colmap]")
+{
+    Network network(770, 1, 0, 7);
+    const TemporaryFolder f;
+    network.write(f);
+    for (const std::string by : {"positions", "lengths"})
+    {
+        const ToolResult result = survey(f, "--" + by + "=" + f / (by + ".csv") + " --colmap-out=" + f / "refracted");
+        CAPTURE(scenes::seed(), by, result.out, result.err);
+        REQUIRE(result.code == 0);
+        CHECK(mentions(result.out, "images left out: left/007.png"));
+        CHECK_FALSE(mentions(readFile(f / "refracted/images.txt"), "nan"));
+        CHECK_FALSE(mentions(readFile(f / "refracted/images.txt"), "left/007.png"));
+        CHECK_FALSE(mentions(readFile(f / "refracted/frames.txt"), "nan"));
+        CHECK(mentions(readFile(f / "refracted/frames.txt"), "\n18 1 "));
+    }
+}
+
 TEST_CASE("Wrong observations of a model are left out, and few others", "[tools][bundle][colmap]")
 {
     Network network(730, 1, 0.1);
@@ -325,7 +374,7 @@ TEST_CASE("A refined model gives images of a pinhole without window", "[tools][u
     for (const Image& image : network.images)
         imwrite(f / ("images/" + image.name), ramp);
     const ToolResult result = runTool("refract_undistort " + f / "again.yml" + " --colmap=" + f / "refracted" + " --image-dir="
-                                      + f / "images" + " --out-dir=" + f / "dense");
+                                      + f / "images" + " --out-dir=" + f / "dense --summary=" + f / "undistorted.json");
     CAPTURE(result.out, result.err);
     REQUIRE(result.code == 0);
     CHECK(mentions(result.out, " images written to "));
@@ -372,6 +421,12 @@ TEST_CASE("A refined model gives images of a pinhole without window", "[tools][u
         CHECK_FALSE(std::filesystem::exists(f / "wrong"));
         return run.err;
     };
+    // Near its origin, which the summary says; and each image in its place.
+    const nlohmann::json origin = nlohmann::json::parse(readFile(f / "summary.json"))["colmap_origin"];
+    CHECK(std::abs(origin[1].get<double>() - FAR[1]) < 200);
+    CHECK(mentions(readFile(f / "refracted/points3D.txt"), "less "));
+    const nlohmann::json undistorted = nlohmann::json::parse(readFile(f / "undistorted.json"));
+    CHECK(undistorted["images"] == 18);
     CHECK(mentions(refusal("again.yml", "sparse"), "of the model's points are more than "));       // bent, in another unit
     network.start[0]->setWindow(GlassWindow(Vec3d(0.2, 0, 1), 60, 1.49, 60, 1.333));
     writeRig(f / "other.yml", network.start, network.Rs, network.Ts);

@@ -6,6 +6,7 @@
 #include "colmap/survey.hpp"
 #include "console/failure.hpp"
 #include "console/file_output.hpp"
+#include "console/json.hpp"
 #include "console/outputs.hpp"
 #include "console/progress.hpp"
 
@@ -353,6 +354,13 @@ PinholeImages writePinholeImages(const ColmapModel& model, const Calibration& ca
     writeStereo(joined(folder, "stereo"), dense);
     setErrors(errors, result);
     return result;
+}
+
+std::string pinholeImagesJson(const PinholeImages& images, const std::string& command)
+{
+    Json json = {{"command", command}, {"images", images.images}, {"images_left_out", images.leftOut}, {"pixels", images.points},
+                 {"wrong_depth_px_rms", images.rms}, {"wrong_depth_px_95", images.most}};
+    return json.text(2) + "\n";
 }
 
 } // namespace tools

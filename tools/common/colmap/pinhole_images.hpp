@@ -26,6 +26,8 @@ elsewhere than the model says. */
 PinholeImages writePinholeImages(const ColmapModel& model, const Calibration& calibration, const std::string& imageFolder,
                                  const std::string& folder, bool quiet);
 
+std::string pinholeImagesJson(const PinholeImages& images, const std::string& command);
+
 //! Throws Failure if a file would overwrite one that is read, and where an image is not there.
 void checkPinholeImages(const ColmapModel& model, const std::vector<std::string>& inputs, const std::string& imageFolder,
                         const std::string& folder);
