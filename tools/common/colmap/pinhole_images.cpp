@@ -162,7 +162,8 @@ void toPixels(const Matx33d& K, std::vector<Point2d>& points)
 
 bool isInside(const Point2d& p, Size size) { return p.x >= 0 && p.y >= 0 && p.x <= size.width - 1 && p.y <= size.height - 1; }
 
-//! px: how far points are off that take no part, one half by the other. What is in one cell is in one half: the same point may be there twice.
+/** px: how far points are off that take no part, one half by the other. What is in one cell is in one half: the same point may be there
+twice. */
 void addErrors(const Seen& seen, const Pinhole& pinhole, Size size, std::vector<double>& errors)
 {
     if (seen.depths.size() < FEW)

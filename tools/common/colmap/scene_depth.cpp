@@ -20,8 +20,8 @@ double median(std::vector<double> values)
     return values[values.size()/2];
 }
 
-/** 1/z = p0 + p1 x + p2 y, where x, y are -1 ... 1; of few points it is their median. Points far off it have little say: a wrong one near the
-camera has a 1/z above all others. */
+/** 1/z = p0 + p1 x + p2 y, where x, y are -1 ... 1; of few points it is their median. Points far off it have little say: a wrong one near
+the camera has a 1/z above all others. */
 Vec3d planeOf(const std::vector<Point2d>& pixels, const std::vector<double>& inverses, Size size)
 {
     const int FEW = 8, ROUNDS = 10, count = (int)pixels.size();

@@ -96,20 +96,6 @@ Vec3d medianPlaceStd(const SurveyAdjustment& adjustment)
     return medianStd(stds);
 }
 
-ColmapCamera cameraOf(const NearestPinhole& pinhole, int camera)
-{
-    ColmapCamera result;
-    const Mat lens = pinhole.camera->lensParameters();
-    result.id = (uint32_t)camera + 1;
-    result.model = pinhole.camera->lensModel() == "fisheye" ? "OPENCV_FISHEYE" : "OPENCV";
-    result.width = (uint64_t)pinhole.camera->imageSize().width;
-    result.height = (uint64_t)pinhole.camera->imageSize().height;
-    result.parameters.assign(lens.ptr<double>(), lens.ptr<double>() + lens.total());
-    for (int i : {2, 3})
-        result.parameters[i] += COLMAP_CORNER;
-    return result;
-}
-
 //! The calibration's rig in the model's place: one, and a frame of each view.
 void addRig(const SurveyResult& result, ColmapModel& model)
 {
@@ -236,7 +222,7 @@ ColmapModel refractedModel(SurveyResult& result)
     ColmapModel model = std::move(result.survey.model);
     model.cameras.clear();
     for (size_t c = 0; c < result.pinholes.size(); c++)
-        model.cameras.push_back(cameraOf(result.pinholes[c], (int)c));
+        model.cameras.push_back(colmapCameraOf(*result.pinholes[c].camera, (uint32_t)c + 1));
     addRig(result, model);
     for (size_t i = 0; i < model.images.size(); i++)
     {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "export/export_files.hpp"
+#include "formats/colmap_model.hpp"
 
 #include <opencv2/calib3d.hpp>
 #include <cmath>
@@ -13,16 +14,12 @@ using cv::Point2d;
 
 namespace {
 
-const double CORNER = 0.5;      // COLMAP's pixel (0, 0) is a corner, not a centre
-
 std::string cameraLine(const ExportedCamera& camera, int id)
 {
-    const auto& lens = camera.central.camera;
-    const cv::Mat p = lens->lensParameters();       // fx fy cx cy k1 k2 p1 p2 [k3 k4 k5 k6], or fisheye's k1 ... k4
-    const char* model = lens->lensModel() == "fisheye" ? "OPENCV_FISHEYE" : p.total() > 8 ? "FULL_OPENCV" : "OPENCV";
-    std::string line = cv::format("%d %s %d %d", id, model, lens->imageSize().width, lens->imageSize().height);
-    for (int i = 0; i < (int)p.total(); i++)
-        line += cv::format(" %.17g", p.at<double>(i) + (i == 2 || i == 3 ? CORNER : 0));
+    const ColmapCamera own = colmapCameraOf(*camera.central.camera, (uint32_t)id);
+    std::string line = cv::format("%d %s %d %d", id, own.model.c_str(), (int)own.width, (int)own.height);
+    for (double parameter : own.parameters)
+        line += cv::format(" %.17g", parameter);
     return line + "\n";
 }
 
@@ -105,7 +102,7 @@ public:
             text += cv::format("%d %.17g %.17g %.17g %.17g %.17g %.17g %.17g %d ", (int)i + 1, q[0], q[1], q[2], q[3], camera.pose.T[0],
                                camera.pose.T[1], camera.pose.T[2], images_[i].camera + 1) + images_[i].name + "\n";
             for (const auto& point : images_[i].points)
-                text += cv::format("%.10g %.10g %d ", point.first.x + CORNER, point.first.y + CORNER, point.second);
+                text += cv::format("%.10g %.10g %d ", point.first.x + COLMAP_CORNER, point.first.y + COLMAP_CORNER, point.second);
             text += "\n";
         }
         return text;

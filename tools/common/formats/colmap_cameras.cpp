@@ -90,4 +90,18 @@ ForeignRig readColmapBinary(const ForeignFile& file)
     return rig;
 }
 
+ColmapCamera colmapCameraOf(const cv::refract::RefractiveCamera& camera, uint32_t id)
+{
+    const cv::Mat lens = camera.lensParameters();       // fx fy cx cy k1 k2 p1 p2 [k3 k4 k5 k6], or fisheye's k1 ... k4
+    ColmapCamera result;
+    result.id = id;
+    result.model = camera.lensModel() == "fisheye" ? "OPENCV_FISHEYE" : lens.total() > 8 ? "FULL_OPENCV" : "OPENCV";
+    result.width = (uint64_t)camera.imageSize().width;
+    result.height = (uint64_t)camera.imageSize().height;
+    result.parameters.assign(lens.ptr<double>(), lens.ptr<double>() + lens.total());
+    for (int i : {2, 3})
+        result.parameters[i] += COLMAP_CORNER;
+    return result;
+}
+
 } // namespace tools

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+namespace cv { namespace refract { class RefractiveCamera; }}
+
 /* A model as COLMAP has it: what cameras saw, from where, of which points. Numbers are COLMAP's own, so that a model that is read and
 written again is the same: its pixel (0, 0) is a corner of the image. */
 namespace tools {
@@ -114,6 +116,9 @@ void writeColmapModel(const ColmapModel& model, const std::string& folder, const
 
 //! The paths of a model's files; writeColmapModel() writes those of one kind, and removes the others.
 std::vector<std::string> colmapFilesOf(const std::string& folder, bool isBinary);
+
+//! Of a camera without a window, as OPENCV, FULL_OPENCV or OPENCV_FISHEYE: by its lens.
+ColmapCamera colmapCameraOf(const cv::refract::RefractiveCamera& camera, uint32_t id);
 
 //! A list of cameras in COLMAP's binary form. Throws Failure.
 std::vector<ColmapCamera> readColmapCameras(const std::string& bytes);
