@@ -17,7 +17,7 @@ namespace tools {
 
 namespace {
 
-const int IMAGES = 8, POINTS = 250;         // of the trials
+const int IMAGES = 8, POINTS = 250, PAIRS = 10;     // of the trials
 const char ADVICE[] = "; give --lengths or --positions";
 const double INFINITE = std::numeric_limits<double>::infinity();
 
@@ -82,7 +82,7 @@ void findPairs(const Survey& survey, Trials& trials)
 {
     const int some = (int)std::min<size_t>(trials.points.size(), 60);
     std::vector<char> isTaken(some, 0);
-    for (int i = 0; i < some; i++)
+    for (int i = 0; i < some && (int)trials.pairs.size() < PAIRS; i++)
     {
         std::vector<std::pair<double, int>> free;
         for (int j = i + 1; j < some && !isTaken[i]; j++)

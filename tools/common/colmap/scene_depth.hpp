@@ -8,8 +8,8 @@
 
 namespace tools {
 
-/** Depth all over an image from that of some of its pixels: 1/z is a plane (as that of a plane is), and what the points are off it, of which
-each cell has the median, smoothed over some pixels and continued where there are none; never nearer or farther than all points.
+/** Depth all over an image from that of some of its pixels: 1/z is a plane (as that of a plane is), and what the points are off it, of
+which each cell has the median, smoothed over some pixels and continued where there are none; never nearer or farther than all points.
 @param pixels at least one. @param depths z of each, above 0
 @return CV_64F */
 cv::Mat_<double> sceneDepth(const std::vector<cv::Point2d>& pixels, const std::vector<double>& depths, cv::Size size);
