@@ -132,8 +132,10 @@ void requireSameCameras(const ColmapModel& model, const Calibration& calibration
         throw Failure("no image of the model shows a point of it that is in front of the camera");
     const double off = median(distances), stated = median(own);
     if (!(off < TIMES*std::max(stated, LEAST)))
-        throw Failure(format("half of the model's points are more than %.3g px off where this calibration sees them, by its own errors "
-                             "%.2g px: give what one run of refract_bundle wrote, --out and --colmap-out", off, stated));
+        throw Failure("half of the model's points " + (std::isfinite(off) ? format("are more than %.3g px off where this calibration sees "
+                      "them, by its own errors %.2g px", off, stated)
+                                               : std::string("cannot be seen through the window of this calibration"))
+                      + ": give what one run of refract_bundle wrote, --out and --colmap-out");
 }
 
 //! Of the largest image without black corners, at the median depth.
