@@ -90,7 +90,7 @@ TEST_CASE("Points that were not seen, or none at all, spoil nothing", "[board qu
 
 TEST_CASE("The edges of an AprilGrid are those of its tags, whatever is beyond the gap between two", "[board quality][aprilgrid]")
 {
-    const int SIDE = 60;
+    const int SIDE = 100;
     for (const double spacing : {0.15, 0.3, 1.})
         for (const double sigma : {1., 2.})
         {

@@ -101,7 +101,7 @@ std::vector<Point2f> onBoard(Size tags, const std::vector<Vec2d>& grid, int tag)
     return board;
 }
 
-const double WRONG = 0.3;           // sides of a tag: what is so far off is elsewhere
+const double WRONG = 0.5;           // sides of a tag: what is elsewhere is off by more than one
 
 //! The image to the board as most corners of some tags say. Empty: they do not tell.
 Mat homographyOf(const Tags& found, Size tags, const std::vector<Vec2d>& grid, const std::vector<int>& which)
