@@ -24,7 +24,7 @@ SurveyResult adjustColmap(const SurveyOptions& options, const BundleStart& start
     result.findings = findingsOf(start, result.start.lengths, result.adjustment.bundle, options.pixelSigma, options.maxRms);
     result.findings.scale = scaleText(result.start, result.adjustment);
     if (result.start.isScaleOfWindow && result.adjustment.scaleStd > VAGUE)
-        result.findings.weak.push_back("the scale, which the window alone tells: give --lengths or --positions");
+        result.findings.weak.insert(result.findings.weak.begin(), "the scale, which the window alone tells: give --lengths or --positions");
     result.pinholes = pinholesOf(result.survey, result.adjustment);
     return result;
 }

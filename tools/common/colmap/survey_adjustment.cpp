@@ -104,6 +104,23 @@ double setErrors(const Survey& survey, SurveyAdjustment& result)
     return all;
 }
 
+//! Of a view most of whose observations are wrong the rest agree by chance: it has no pose.
+void loseDoubtfulViews(const Survey& survey, SurveyAdjustment& result)
+{
+    std::vector<int> seen(result.rvecs.size(), 0), kept(result.rvecs.size(), 0);
+    for (size_t i = 0; i < survey.observations.size(); i++)
+    {
+        seen[survey.observations[i][0]]++;
+        kept[survey.observations[i][0]] += result.used[i];
+    }
+    const auto isDoubtful = [&](int view) { return 2*kept[view] < seen[view]; };
+    for (size_t i = 0; i < survey.observations.size(); i++)
+        result.used[i] = result.used[i] && !isDoubtful(survey.observations[i][0]);
+    for (int view = 0; view < (int)result.rvecs.size(); view++)
+        if (isDoubtful(view))
+            result.rvecs[view] = result.tvecs[view] = Vec3d::all(NaN);
+}
+
 //! A point whose +- is not finite has no answer, and its observations no use.
 void setPoints(const Survey& survey, const std::vector<Point3d>& points, const Mat& deviations, SurveyAdjustment& result)
 {
@@ -255,6 +272,7 @@ SurveyAdjustment adjustSurvey(const Survey& survey, const BundleStart& bundle, c
             restartLost(start, points, result);
         progress.step();
     }
+    loseDoubtfulViews(survey, result);
     setPoints(survey, points, deviations, result);
     const double squares = setErrors(survey, result);
     setAngles(survey, result);

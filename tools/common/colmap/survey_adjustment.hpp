@@ -13,7 +13,7 @@ namespace tools {
 struct SurveyAdjustment
 {
     BundleAdjustment bundle;                    //!< its points are those of the model; less the start's origin
-    std::vector<cv::Vec3d> rvecs, tvecs;        //!< scene -> camera 1, of each view; NaN: none of its observations is used
+    std::vector<cv::Vec3d> rvecs, tvecs;        //!< scene -> camera 1, of each view; NaN: most of its observations are wrong
     std::vector<cv::Mat> viewCovariances;       //!< 6x6 each; 0: it is the frame
     std::vector<uchar> used;                    //!< of each observation
     std::vector<double> errors;                 //!< of each observation, px: where it was seen from where it is projected; NaN: no point

@@ -26,16 +26,33 @@ Lines broken(const std::string& text, const std::string& indent = "  ")
 
 void append(Lines& lines, const Lines& more) { lines.insert(lines.end(), more.begin(), more.end()); }
 
-//! The first reason, whole; of the others as many as there is room for, and how many more there are.
+//! As many of what may be so, one or the other, as there is room for: none is cut if the first fits.
+Lines alternativesWithin(const std::string& reason, size_t room)
+{
+    const std::string OR = "; or ";
+    size_t end = reason.size();
+    for (int left = 0; end != std::string::npos; left++)
+    {
+        const std::string rest = left == 0 ? "" : OR + std::to_string(left) + (left == 1 ? " other cause" : " other causes");
+        const Lines lines = broken("- " + reason.substr(0, end) + rest + ".");
+        if (lines.size() <= room)
+            return lines;
+        end = end == 0 ? std::string::npos : reason.rfind(OR, end - 1);
+    }
+    return firstOf(broken("- " + reason + "."), room, DIGEST_COLUMNS);
+}
+
+//! As many reasons as there is room for, and how many more there are.
 Lines reasonsWithin(const Lines& reasons, size_t room)
 {
     Lines lines;
     const size_t each = std::max(LEAST_OF_REASON, room/std::max<size_t>(1, reasons.size()));
     for (size_t i = 0; i < reasons.size(); i++)
     {
-        const Lines all = broken("- " + reasons[i] + "."), next = i == 0 ? all : firstOf(all, each, DIGEST_COLUMNS);
         const size_t kept = i + 1 < reasons.size() ? 1 : 0;     // for what may not fit after it
-        if (i > 0 && lines.size() + next.size() + kept > room)
+        const size_t most = room > lines.size() + kept ? room - lines.size() - kept : 0;
+        const Lines next = i == 0 ? alternativesWithin(reasons[i], most) : firstOf(broken("- " + reasons[i] + "."), each, DIGEST_COLUMNS);
+        if (most == 0 || next.size() > most)
         {
             lines.push_back(format("- and %zu more: --verbose", reasons.size() - i));
             break;
