@@ -74,7 +74,7 @@ TEST_CASE("Tables of points that cannot be read are refused in a sentence", "[fo
     CHECK_THAT(failure(f, "a,b\n1,2\n"), Catch::Contains("there is no column 'id'"));
 }
 
-TEST_CASE("--y-from is refused where it says nothing", "[foreign]")
+TEST_CASE("Where y begins is refused where it says nothing", "[foreign]")
 {
     TemporaryFolder f;
     for (const char* text : {"frame,cam_id,pt_idx,x,y\n0,0,0,1,2\n", "id,u1,v1\n1,2,3\n"})
