@@ -259,7 +259,8 @@ TEST_CASE("The first page of the report prints on one sheet of A4", "[calib_tool
         };
         const std::string first = textOfPage(1), second = textOfPage(2);
         INFO(first << "-----\n" << second);
-        for (const char* part : {c.stereo ? "CALIBRATION OF 2 CAMERAS" : "CALIBRATION OF A CAMERA", "Expected error of a measured point", "What to do next"})
+        const char* const heading = c.stereo ? "CALIBRATION OF 2 CAMERAS" : "CALIBRATION OF A CAMERA";
+        for (const char* part : {heading, "Expected error of a measured point", "What to do next"})
         {
             CHECK(mentions(first, part));
             CHECK_FALSE(mentions(second, part));

@@ -287,7 +287,8 @@ void subtractPose(int view, const std::vector<PoseColumns>& seen, std::vector<in
             }
         }
     }
-    equations.ofBoth.middleRows<SIZE>(SIZE*view) -= ofBoth;
+    if (cameras > 0)        // an empty matrix has no rows to take
+        equations.ofBoth.middleRows<SIZE>(SIZE*view) -= ofBoth;
 }
 
 //! From all but the cameras' own. Each pose by itself, the clusters in their order, so that threads make no difference.
