@@ -27,7 +27,7 @@ expect()
 expect refract_board --patt is --pattern
 expect refract_board --o is --out
 expect refract_board --pattern = ch is chessboard charuco
-expect refract_board --pattern = is chessboard circles acircles charuco
+expect refract_board --pattern = is chessboard circles acircles charuco aprilgrid
 expect refract_calib --max- is --max-rms --max-normal-std --max-error-at
 expect refract_calib --lens = fish is fisheye
 expect refract_undistort samples/data/stereo/tru is samples/data/stereo/truth.yml

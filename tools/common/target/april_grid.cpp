@@ -32,6 +32,7 @@ namespace {
 
 const int BITS = 6, BORDER = 2, MODULES = BITS + 2*BORDER;
 const int CORNERS = 4;
+const size_t LEAST = 2;             // tags that make a board
 
 typedef std::map<int, std::vector<Point2f>> Tags;       // number -> corners as OpenCV has them
 
@@ -237,9 +238,15 @@ Mat drawAprilGrid(Size tags, double spacing, int pixelsPerTag)
     return image;
 }
 
+bool showsAprilTags(const Mat& grey)
+{
+    Tags found;
+    addTags(grey, 1., found);
+    return found.size() >= LEAST;
+}
+
 std::vector<Point2d> detectAprilGrid(const Mat& grey, Size tags, double spacing)
 {
-    const size_t LEAST = 2;
     const double REACH = 0.8*APRIL_BORDER;        // what is nearest to a corner inside of a tag are its bits
     Tags found;
     for (const double scale : {1., 2.})             // the squares join tags; in a larger image small ones come apart

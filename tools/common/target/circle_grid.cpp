@@ -49,13 +49,13 @@ std::vector<Point2f> findDots(const Mat& grey, Size size, bool asymmetric)
     for (const uchar colour : {0, 255})
     {
         limits.blobColor = colour;
-        const auto detector = SimpleBlobDetector::create(limits);
-        std::vector<Point2f> found;
+        std::vector<Point2f> found, centres;
         std::vector<KeyPoint> blobs;
-        detector->detect(grey, blobs);
-        if (!findCirclesGrid(grey, size, found, flags, detector))
+        SimpleBlobDetector::create(limits)->detect(grey, blobs);
+        KeyPoint::convert(blobs, centres);
+        if (!findCirclesGrid(centres, size, found, flags, nullptr))
             found = gridOfBlobs(blobs, size, asymmetric);
-        if (found.empty() && !findCirclesGrid(grey, size, found, flags | CALIB_CB_CLUSTERING, detector))
+        if (found.empty() && !findCirclesGrid(centres, size, found, flags | CALIB_CB_CLUSTERING, nullptr))
             continue;
         const std::vector<Point2f> diameters = diametersAt(found, blobs);
         found.insert(found.end(), diameters.begin(), diameters.end());

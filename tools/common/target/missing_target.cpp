@@ -4,6 +4,7 @@
 #include "target/missing_target.hpp"
 #include "console/failure.hpp"
 #include "console/numbers.hpp"
+#include "target/april_grid.hpp"
 #include "target/dot_lattice.hpp"
 #include "target/partial_chessboard.hpp"
 
@@ -55,19 +56,6 @@ cv::Size usualSize(const std::vector<Without>& images)
     return cv::Size();
 }
 
-//! A board whose tags are not those of the size is one of another size.
-bool isSeenIn(const cv::Mat& grey, const Target& target)
-{
-    try
-    {
-        return !target.detect(grey, nullptr, Target::HURRIED).empty();
-    }
-    catch (const Failure&)
-    {
-        return true;
-    }
-}
-
 //! In at least one of the first images.
 bool isFound(const Target& target, const std::vector<Without>& images, Channel channel)
 {
@@ -75,7 +63,7 @@ bool isFound(const Target& target, const std::vector<Without>& images, Channel c
     std::vector<char> found(count);
     cv::parallel_for_(cv::Range(0, (int)count), [&](const cv::Range& range) {
         for (int i = range.start; i < range.end; i++)
-            found[i] = isSeenIn(readGrey(images[i].path, channel), target);
+            found[i] = !target.detect(readGrey(images[i].path, channel), nullptr, Target::HURRIED).empty();
     }, (double)count);
     return std::count(found.begin(), found.end(), true) > 0;
 }
@@ -123,24 +111,18 @@ std::string partText(const std::vector<Without>& images, const Target& target, C
            + " inner corners): " + partAdvice(images, target, channel);
 }
 
-//! A target of another kind, with the same number of points, or an AprilGrid; empty: none is found.
-std::string otherPattern(const std::vector<Without>& images, const Target& target, Channel channel)
+//! A target with tags: a ChArUco board with the same number of points, or an AprilGrid; empty: none is found.
+std::string otherTags(const std::vector<Without>& images, const Target& target, Channel channel)
 {
-    static const struct { Target::Pattern pattern; const char *name, *dictionary; } OTHERS[] = {
-        {Target::CHARUCO, "charuco", "DICT_4X4_250"}, {Target::CHARUCO, "charuco", "DICT_5X5_1000"},
-        {Target::CHARUCO, "charuco", "DICT_6X6_1000"}, {Target::CHARUCO, "charuco", "DICT_7X7_1000"},
-        {Target::CHARUCO, "charuco", "DICT_ARUCO_ORIGINAL"}, {Target::CIRCLES, "circles", "DICT_4X4_250"},
-        {Target::ACIRCLES, "acircles", "DICT_4X4_250"}, {Target::APRILGRID, "aprilgrid", "DICT_4X4_250"}};
     const std::vector<Without> one(images.begin(), images.begin() + 1);
-    for (const auto& other : OTHERS)
+    for (const char* dictionary : {"DICT_4X4_250", "DICT_5X5_1000", "DICT_6X6_1000", "DICT_7X7_1000", "DICT_ARUCO_ORIGINAL"})
     {
-        const std::optional<Target> tried = like(target, other.name, other.dictionary, false);
-        const bool same = other.pattern == target.pattern() && other.pattern != Target::CHARUCO;
-        if (!same && tried && isFound(*tried, one, channel))
-            return std::string("--pattern=") + other.name
-                   + (other.pattern == Target::CHARUCO ? std::string(" --dictionary=") + other.dictionary : "")
-                   + (other.pattern == Target::APRILGRID ? " (whose --size counts tags)" : "");
+        const std::optional<Target> tried = like(target, "charuco", dictionary, false);
+        if (tried && isFound(*tried, one, channel))
+            return std::string("--pattern=charuco --dictionary=") + dictionary;
     }
+    if (target.pattern() != Target::APRILGRID && showsAprilTags(readGrey(one[0].path, channel)))
+        return "--pattern=aprilgrid (whose --size counts tags)";
     return "";
 }
 
@@ -224,7 +206,7 @@ std::string explainMissing(const std::vector<Without>& images, const std::string
     const std::string dots = otherDots(images, target, channel);
     if (!dots.empty())
         return dots;
-    const std::string other = otherPattern(images, target, channel);
+    const std::string other = otherTags(images, target, channel);
     if (!other.empty())
         return "the target in " + quotedNames({images[0]}) + " looks like one of another kind: give " + other + ", or check --size="
                + target.sizeText();
