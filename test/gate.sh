@@ -32,12 +32,6 @@ lane=$!
 run "style: shell, Python, white space, links" tools/lint.sh
 build build/release
 suite "all tests but the slow ones" build/release -LE slow
-# Those that take a minute each: a third of them, by turns.
-thirds=$((($(turn_of 102) - 1)/34 + 1))      # the next third after a round of the slices
-[ "$scope" = --all ] || thirds="1 2 3"
-for third in $thirds; do
-  suite "slow tests, $third of 3" build/release -L slow -I "$third,,3"
-done
 # A kernel's rounding, and what it accepts, differ from one instruction set to the next.
 kernels='^(kernels|lens|camera|project|undistort(_map)?|plane|triangulate(_rig)?|epilines|epipolar|stereo_rectify|pnp|dome)$'
 for disabled in AVX512-SKX AVX512-SKX,AVX2; do
@@ -57,23 +51,45 @@ for sample in build/release/bin/sample_*; do
   run "$(basename "$sample")" "$sample"
 done
 
-# One build for the module's suite and the fuzzers, which want clang.
-targets="refract_tests fuzzers"     # of build()
-sanitize_build
-targets=""
-# What reads files is under them in the fuzzers; the tools' fits take ten times as long so: a slice.
-suite "the module under sanitizers" build/sanitize -L '^refract_tests$' -LE 'slow|real'
-unset ASAN_OPTIONS OPENCV_FOR_THREADS_NUM
-run "fuzzing: every parser and every public call, some seconds each" test/fuzz/run.sh
+# What takes long, by turns: the part whose turn it is, and the next ones as long as the hour lasts.
+part_slow_tests() {     # a third of those that take a minute each
+  thirds=$((($(turn_of 102) - 1)/34 + 1))
+  [ "$scope" = --all ] || thirds="1 2 3"
+  for third in $thirds; do
+    suite "slow tests, $third of 3" build/release -L slow -I "$third,,3"
+  done
+}
+# The two that want clang share a build. What reads files is under sanitizers in the fuzzers; the tools' fits take ten times as long
+# so: a slice.
+part_sanitizers() {
+  targets=refract_tests
+  sanitize_build
+  targets=""
+  suite "the module under sanitizers" build/sanitize -L '^refract_tests$' -LE 'slow|real'
+  unset ASAN_OPTIONS OPENCV_FOR_THREADS_NUM
+}
+part_fuzzers() { run "fuzzing: every parser and every public call, some seconds each" test/fuzz/run.sh; }
+part_slice() {
+  slices_now=$(slice_of_the_turn)
+  [ "$scope" = --all ] || slices_now=$(names_of_slices)
+  for slice in $slices_now; do
+    run "the slice $slice" slice_in_time "$slice"
+  done
+}
+first=$((($(turn_of 136) - 1)/34))      # the next part after a round of the slices
+for i in 0 1 2 3; do
+  # shellcheck disable=SC2046  # words
+  part=$(echo slow_tests sanitizers fuzzers slice | cut -d ' ' -f $(((first + i) % 4 + 1)))
+  if [ $i = 0 ] || [ "$scope" != --all ] || [ $(($(date +%s) - begun)) -lt 2100 ]; then     # each takes up to 25 minutes
+    "part_$part"
+  else
+    echo "left for its turn, as the hour is nearly over: $part"
+  fi
+done
 
 run "Python package, its tests and samples" result_of python
 run "in OpenCV 4.14's tree: configures, compiles the module, generates bindings" result_of opencv4
 run "in OpenCV 5.0's tree, without Ceres: the same" result_of opencv5
 run "Python bindings for the headers of OpenCV 4.6, 4.14 and 5.0" result_of bindings
 run "what one clone has compiled another one finds in the compiler's cache" result_of cache
-turn=$(slice_of_the_turn)
-[ "$scope" = --all ] || turn=$(names_of_slices)
-for slice in $turn; do
-  run "the slice $slice" slice_in_time "$slice"
-done
 run "the same hundred values from every build" test/agreement/run.sh build/release

@@ -6,9 +6,9 @@
 #
 # Usage: test/run.sh [--all | --release | --slices | --slice NAME [--record]]
 #   without an option: the library, its tests and those of the tools that do not take a minute each. Ten minutes on two cores.
-#   --all      the gate: these, a third of the others by turns, what else a change may break (instruction sets, sanitizers, fuzzers,
-#              Python, OpenCV's own tree, packages, samples, the commands of the documentation), and one slice of what is rare or
-#              slow, by turns
+#   --all      the gate: these, what else a change may break (instruction sets, Python, OpenCV's own tree, packages, samples, the
+#              commands of the documentation), and by turns, as much as an hour has time for: a third of the other tests, the module
+#              under sanitizers, the fuzzers, one slice of what is rare or slow
 #   --release  the gate and all of the slices: hours
 #   --slices   lists the slices (test/slices.sh): at which commit each was last green, and since when its inputs have changed
 #   --slice NAME    runs one of them; --record writes into test/slices.txt that it was green

@@ -3,8 +3,8 @@
 
 # shellcheck shell=sh disable=SC2034  # variables of test/run.sh
 
-# What is rare or slow, in slices of at most twenty-five minutes on two cores from nothing: sourced by test/run.sh. Each run of the
-# gate takes one of them, so that none goes without being run for long.
+# What is rare or slow, in slices of at most twenty-five minutes on two cores from nothing: sourced by test/run.sh. The gate takes one
+# of them by turns, so that none goes without being run for long.
 #
 # Of each: its name, the minutes that it may take, the packages that it needs (tools/install_dependencies.sh), and its inputs: a
 # change of these makes an earlier run of it old.
