@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // What a problem's data can and cannot tell.
+#include "math/dense.hpp"
 #include "problem_scenes.hpp"
-#include <Eigen/LU>
 
 using namespace cv;
 using namespace cv::refract;
@@ -43,11 +43,12 @@ MatrixXd expectedCovariance(const RigTruth& truth, const RigScene& scene, const 
         MatrixXd row = MatrixXd::Zero(J.rows(), count + 6*views);
         row.leftCols(count) = J.rightCols(all)*basis;
         row.middleCols(count + 6*view, 6) = J.leftCols(6);
-        normal += row.transpose()*row;
+        normal += transposeTimes(row, row);
     }
     const Eigen::VectorXd scale = normal.diagonal().cwiseSqrt().cwiseInverse();
-    const MatrixXd inverse = scale.asDiagonal()*(scale.asDiagonal()*normal*scale.asDiagonal()).inverse()*scale.asDiagonal();
-    return variance*basis*inverse.topLeftCorner(count, count)*basis.transpose();
+    const MatrixXd scaled = scale.asDiagonal()*normal*scale.asDiagonal();
+    const MatrixXd covariance = scale.asDiagonal()*cv::refract::inverse(scaled)*scale.asDiagonal();
+    return variance*propagated(covariance.topLeftCorner(count, count), basis);
 }
 
 RigTruth one(const GlassWindow& window)

@@ -9,8 +9,8 @@
 #include "accept/acceptance.hpp"
 #include "calibrate/given_std.hpp"
 #include "diagnose/rig_vector.hpp"
+#include "normal_draw.hpp"
 #include "report/summary.hpp"
-#include <Eigen/Eigenvalues>
 #include <catch2/catch.hpp>
 
 namespace acceptance_scene {
@@ -33,21 +33,12 @@ inline Calibration calibrated(double square = 2e-4)
 class TrueRigs
 {
 public:
-    explicit TrueRigs(const Calibration& calibration) : rig_(modelOf(calibration)), start_(toVector(rig_))
-    {
-        const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(toEigen(calibration.covariance));
-        root_ = solver.eigenvectors()*solver.eigenvalues().cwiseMax(0.).cwiseSqrt().asDiagonal();
-        for (int i = 0; i < root_.rows(); i++)          // what is exact stays so, to the last digit
-            if (calibration.covariance.at<double>(i, i) == 0.)
-                root_.row(i).setZero();
-    }
+    explicit TrueRigs(const Calibration& calibration)
+        : rig_(modelOf(calibration)), start_(toVector(rig_)), root_(scenes::rootOf(toEigen(calibration.covariance))) {}
     RigModel draw(scenes::Random& random) const
     {
-        VectorXd numbers(root_.cols());
-        for (double& number : numbers)
-            number = random.normal(1.);
         VectorXd changed = start_;
-        changed.head(root_.rows()) += root_*numbers;
+        changed.head(root_.rows()) += scenes::drawn(root_, random);
         return withVector(rig_, changed);
     }
 

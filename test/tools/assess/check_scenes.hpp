@@ -10,9 +10,9 @@
 #include "calibrate/parameter_columns.hpp"
 #include "calibrate/units.hpp"
 #include "measure/view_observations.hpp"
+#include "normal_draw.hpp"
 #include "paper_rig.hpp"
 #include "simulate/render.hpp"
-#include <Eigen/Eigenvalues>
 
 namespace check_scenes {
 
@@ -131,16 +131,6 @@ inline std::vector<Scene> allScenes()
             makeScene("stereo, water", 2, false, 1.333), makeScene("three cameras, one window, air, pairs", 3, true, 1.)};
 }
 
-inline VectorXd draw(const MatrixXd& C, scenes::Random& random)
-{
-    const VectorXd std = C.diagonal().cwiseMax(1e-300).cwiseSqrt();
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(std.cwiseInverse().asDiagonal()*C*std.cwiseInverse().asDiagonal());
-    VectorXd z(C.rows());
-    for (double& value : z)
-        value = random.normal(1.);
-    return std.asDiagonal()*(eigen.eigenvectors()*(eigen.eigenvalues().cwiseMax(0.).cwiseSqrt().cwiseProduct(z)));
-}
-
 inline std::vector<View> calibrationViews(const Scene& scene, const RigModel& truth, scenes::Random& random)
 {
     std::vector<View> views;
@@ -172,7 +162,7 @@ inline Calibrated calibrated(const Scene& scene, scenes::Random& random)
         for (int i = at.distance; i < at.end; i++)
             given(i, i) = scene.prior(i, i);
     }
-    setParameters(c.truth, parametersOf(scene.nominal) + draw(given, random));
+    setParameters(c.truth, parametersOf(scene.nominal) + scenes::drawn(scenes::rootOf(given), random));
     const CheckProblem problem({scene.nominal, toMat(scene.prior), SIGMA, 1e8}, calibrationViews(scene, c.truth, random), SIGMA);
     const CheckFit fit = problem.fitUnchanged();
     REQUIRE(std::isfinite(fit.chiSquare));

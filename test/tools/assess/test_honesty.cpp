@@ -9,9 +9,9 @@ distance, lens, R and T. The long form is hidden: run with [.honesty]. */
 #include "calibrate/image_fit.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "calibrate/outliers.hpp"
+#include "math/dense.hpp"
 #include "paper_rig.hpp"
 #include "simulate/render.hpp"
-#include <Eigen/LU>
 #include <map>
 
 using namespace cv;
@@ -634,7 +634,7 @@ double lengthVariance(const Fit& fit, const Point3d& a, const Point3d& b)
     {
         const ViewDerivatives view = differentiateView(fit.rig, points, Vec3d(), Vec3d(), {{0, true, {i}}, {1, true, {i}}});
         const Eigen::MatrixXd B = view.byPose.rightCols(3);        // the pose is the identity: by its T is by the point
-        const Eigen::MatrixXd dX = (B.transpose()*B).inverse()*B.transpose()*view.byParameters;
+        const Eigen::MatrixXd dX = product(pseudoInverse(B), view.byParameters);
         const Eigen::RowVectorXd part = Eigen::RowVector3d(along[0], along[1], along[2])*dX;
         byParameters = i == 0 ? Eigen::RowVectorXd(part) : Eigen::RowVectorXd(byParameters - part);
     }

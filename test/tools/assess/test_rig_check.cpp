@@ -7,8 +7,8 @@
 #include "calibrate/parameter_columns.hpp"
 #include "console/failure.hpp"
 #include "console/table.hpp"
+#include "math/dense.hpp"
 #include "paper_rig.hpp"
-#include <Eigen/Eigenvalues>
 
 using namespace cv;
 using namespace cv::refract;
@@ -43,13 +43,12 @@ Mat calibratedCovariance(const RigModel& rig, const std::vector<Point3d>& object
 RigModel drawn(const RigModel& truth, const Mat& covariance, scenes::Random& random)
 {
     const int at = columnsOf(truth, 0).normal;
-    const Eigen::MatrixXd C = toEigen(covariance(Rect(at, at, 3, 3)));
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(C);
+    const SymmetricEigen eigen(toEigen(covariance(Rect(at, at, 3, 3))));
     RigModel rig = truth.clone();
     GlassWindow window = rig.cameras[0]->window();
     for (int k = 0; k < 3; k++)
         for (int axis = 0; axis < 3; axis++)
-            window.normal[axis] += eigen.eigenvectors()(axis, k)*random.normal(std::sqrt(std::max(0., eigen.eigenvalues()[k])));
+            window.normal[axis] += eigen.vectors(axis, k)*random.normal(std::sqrt(std::max(0., eigen.values[k])));
     window.normal = normalize(window.normal);
     rig.cameras[0]->setWindow(window);
     return rig;

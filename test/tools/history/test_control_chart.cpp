@@ -6,6 +6,7 @@ from simulated images through the same code as in refract_check; so does every c
 #include "assess/check_scenes.hpp"
 #include "history/rig_history.hpp"
 #include "console/failure.hpp"
+#include "normal_draw.hpp"
 #include "temporary_folder.hpp"
 #include <fstream>
 
@@ -54,10 +55,10 @@ RigModel tilted(const RigModel& rig, int c, double degrees, double azimuth)
 class InControl
 {
 public:
-    InControl(const CheckHistory& history, const MatrixXd& covariance) : ofCalibration_(rootOf(covariance))
+    InControl(const CheckHistory& history, const MatrixXd& covariance) : ofCalibration_(scenes::rootOf(covariance))
     {
         for (const CheckRecord& check : history.checks)
-            ofNoise_.push_back(rootOf(check.information - check.byParameters*covariance*check.byParameters.transpose()));
+            ofNoise_.push_back(scenes::rootOf(check.information - check.byParameters*covariance*check.byParameters.transpose()));
     }
 
     void draw(CheckHistory& history, scenes::Random& random) const
@@ -66,31 +67,15 @@ public:
         std::chi_squared_distribution<double> chiSquare(dof);
         std::mt19937_64 engine((unsigned)random.below(1 << 30));
         const double noise = std::sqrt(dof/chiSquare(engine));
-        const VectorXd dp = noise*ofCalibration_*normals(ofCalibration_.cols(), random);
+        const VectorXd dp = noise*scenes::drawn(ofCalibration_, random);
         for (size_t t = 0; t < history.checks.size(); t++)
         {
             CheckRecord& check = history.checks[t];
-            check.score = check.byParameters*dp + noise*ofNoise_[t]*normals(ofNoise_[t].cols(), random);
+            check.score = check.byParameters*dp + noise*scenes::drawn(ofNoise_[t], random);
         }
     }
 
 private:
-    static VectorXd normals(Eigen::Index count, scenes::Random& random)
-    {
-        VectorXd z(count);
-        for (double& value : z)
-            value = random.normal(1.);
-        return z;
-    }
-
-    static MatrixXd rootOf(const MatrixXd& C)
-    {
-        const VectorXd std = C.diagonal().cwiseMax(0.).cwiseSqrt();
-        const VectorXd inverse = std.unaryExpr([](double s) { return s > 0. ? 1./s : 0.; });
-        const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(inverse.asDiagonal()*C*inverse.asDiagonal());
-        return std.asDiagonal()*eigen.eigenvectors()*eigen.eigenvalues().cwiseMax(0.).cwiseSqrt().asDiagonal();
-    }
-
     MatrixXd ofCalibration_;
     std::vector<MatrixXd> ofNoise_;
 };

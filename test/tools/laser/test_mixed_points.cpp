@@ -5,8 +5,7 @@
 next to the steps, too. The sheet and the camera are exact here. */
 #include "laser/scan_line.hpp"
 #include "calibrate/parameter_columns.hpp"
-#include "laser_scene.hpp"
-#include "simulate/true_line.hpp"
+#include "laser_behind_pane.hpp"
 #include <catch2/catch.hpp>
 #include <algorithm>
 #include <iostream>
@@ -19,47 +18,26 @@ namespace {
 
 const double FAR = 470.;                // z of the wall behind the bars
 
-LightSource laserBehindPane()
+//! Its true line is dense.
+LightSource wideLaser()
 {
-    LightSource result;
-    const Vec3d position(15, 210, 10), z = normalize(Vec3d(0, 0, 450) - position), along(1, 0.02, 0);
-    const Vec3d y = normalize(along - along.dot(z)*z), x = y.cross(z);
-    result.emitter.camera = RefractiveCamera::create(Matx33d(1000, 0, 200, 0, 1000, 600, 0, 0, 1), noArray(),
-                                                     GlassWindow(Vec3d(0.3, 0.1, 1.), 8., 1.52, 30., 1.333));
+    LightSource result = laser::laserBehindPane();
     result.emitter.camera->setImageSize(Size(400, 4800));
-    result.emitter.camera->setLensParameters(Mat(std::vector<double>{4000, 4000, 200, 2400}));      // dense: the true line's points
-    result.emitter.R = Matx33d(x[0], x[1], x[2], y[0], y[1], y[2], z[0], z[1], z[2]);
-    result.emitter.position = position;
-    result.emitter.line = 200.;
-    result.color = Vec3d(0, 1, 0);
-    result.brightness = 90.;
+    result.emitter.camera->setLensParameters(Mat(std::vector<double>{4000, 4000, 200, 2400}));
     result.width = 12.;
-    result.speckle = 0.1;
     return result;
 }
 
 //! Bars before a wall, each by another step, from a tenth of a millimetre on.
 TexturedScene bars(scenes::Random& random)
 {
-    TexturedScene scene;
-    scene.texture.size = 30.;
-    scene.texture.contrast = 0.2;
-    const Vec3d front(0, 0, -1), right(1, 0, 0), white(1, 1, 1);
-    scene.surfaces = {std::make_shared<Plane>(Vec3d(0, 0, FAR), front, white)};
+    TexturedScene scene = laser::wall(FAR);
     for (double x = -110; x < 110; x += random.uniform(25, 45))
-        scene.surfaces.push_back(std::make_shared<Plane>(Vec3d(x, 0, FAR - std::pow(10., random.uniform(-1., 1.8))), front, right,
-                                                         Size2d(random.uniform(7, 12), 150), white));
+    {
+        const double z = FAR - std::pow(10., random.uniform(-1., 1.8));
+        scene.surfaces.push_back(laser::bar(Vec3d(x, 0, z), Size2d(random.uniform(7, 12), 150)));
+    }
     return scene;
-}
-
-Exposure exposure()
-{
-    Exposure e;
-    e.dark = 25.;
-    e.light = 130.;
-    e.background = 60.;
-    e.noise = laser::NOISE;
-    return e;
 }
 
 Sheet exactSheet(const LightSource& source, const Calibration& calibration)
@@ -95,7 +73,7 @@ struct Tally
 Tally tallyOf(int trials, unsigned salt)
 {
     const Calibration calibration = laser::camera();
-    const LightSource source = laserBehindPane();
+    const LightSource source = wideLaser();
     const Viewpoint view = {calibration.cameras[0].camera};
     Tally tally;
     for (int trial = 0; trial < trials; trial++)
@@ -105,7 +83,7 @@ Tally tallyOf(int trials, unsigned salt)
         Illumination light;
         light.sources = {source};
         light.seed = (uint64_t)random.uniform(1, 1e9);
-        const Mat signal = laserSignal(renderScene(scene, view, exposure(), light.seed + 7, &light), LASER_GREEN);
+        const Mat signal = laserSignal(renderScene(scene, view, laser::exposure(), light.seed + 7, &light), LASER_GREEN);
         const TrueLine line = trueLine(source, true, scene, view);
         Sheet sheet = exactSheet(source, calibration);
         sheet.scale = scaleOfLine(signal, line.pixels);

@@ -10,8 +10,7 @@ calibration leaves them, and so is how the laser was built. */
 #include "calibrate/parameter_columns.hpp"
 #include "calibrate/rig_model.hpp"
 #include "console/failure.hpp"
-#include "laser_scene.hpp"
-#include "simulate/true_line.hpp"
+#include "laser_behind_pane.hpp"
 #include "temporary_folder.hpp"
 #include <catch2/catch.hpp>
 #include <iostream>
@@ -27,44 +26,12 @@ const double CAMERA_NORMAL = 0.03*DEGREE, CAMERA_DISTANCE = 0.3, CAMERA_THICKNES
 const double TURNED = 1.5*DEGREE, PLACED = 4., NORMAL = 0.3*DEGREE, DISTANCE = 1.;                          // of the emitter
 const double HEIGHTS[] = {500., 450., 430., 400.};                                                          // z of the block's faces
 
-LightSource laserBehindPane()
-{
-    LightSource result;
-    const Vec3d position(15, 210, 10), z = normalize(Vec3d(0, 0, 450) - position), along(1, 0.02, 0);
-    const Vec3d y = normalize(along - along.dot(z)*z), x = y.cross(z);
-    result.emitter.camera = RefractiveCamera::create(Matx33d(1000, 0, 200, 0, 1000, 600, 0, 0, 1), noArray(),
-                                                     GlassWindow(Vec3d(0.3, 0.1, 1.), 8., 1.52, 30., 1.333));
-    result.emitter.camera->setImageSize(Size(400, 1200));
-    result.emitter.R = Matx33d(x[0], x[1], x[2], y[0], y[1], y[2], z[0], z[1], z[2]);
-    result.emitter.position = position;
-    result.emitter.line = 200.;
-    result.color = Vec3d(0, 1, 0);
-    result.brightness = 90.;
-    result.width = 4.;
-    result.speckle = 0.1;
-    return result;
-}
-
 TexturedScene block()
 {
-    TexturedScene scene;
-    scene.texture.size = 30.;
-    scene.texture.contrast = 0.2;
-    const Vec3d front(0, 0, -1), right(1, 0, 0), white(1, 1, 1);
-    scene.surfaces = {std::make_shared<Plane>(Vec3d(0, 0, HEIGHTS[0]), front, white)};
+    TexturedScene scene = laser::wall(HEIGHTS[0]);
     for (int i = 1; i < 4; i++)
-        scene.surfaces.push_back(std::make_shared<Plane>(Vec3d(-90. + 40*i, 0, HEIGHTS[i]), front, right, Size2d(20, 100), white));
+        scene.surfaces.push_back(laser::bar(Vec3d(-90. + 40*i, 0, HEIGHTS[i]), Size2d(20, 100)));
     return scene;
-}
-
-Exposure exposure()
-{
-    Exposure e;
-    e.dark = 25.;
-    e.light = 130.;
-    e.background = 60.;
-    e.noise = laser::NOISE;
-    return e;
 }
 
 Vec3d tangent(const Vec3d& n, double a, double b)
@@ -133,7 +100,7 @@ struct Images
         {
             const laser::Pose pose = laser::randomPose(random);
             light.seed = (uint64_t)random.uniform(1, 1e9);
-            boards.push_back(laserSignal(render(laser::board(), {pose.rvec, pose.tvec}, view, exposure(), light.seed + 7, &light),
+            boards.push_back(laserSignal(render(laser::board(), {pose.rvec, pose.tvec}, view, laser::exposure(), light.seed + 7, &light),
                                          LASER_GREEN));
             std::vector<Point2d> pixels;
             refractiveProjectPoints(laser::board().objectPoints(), pose.rvec, pose.tvec, view.camera, pixels);
@@ -142,7 +109,7 @@ struct Images
             corners.push_back(pixels);
         }
         light.seed = (uint64_t)random.uniform(1, 1e9);
-        scan = laserSignal(renderScene(block(), view, exposure(), light.seed + 7, &light), LASER_GREEN);
+        scan = laserSignal(renderScene(block(), view, laser::exposure(), light.seed + 7, &light), LASER_GREEN);
         line = trueLine(source, true, block(), view);
     }
 
@@ -262,7 +229,7 @@ struct Comparison
     void run(int trials)
     {
         const Calibration truth = laser::camera();
-        const LightSource source = laserBehindPane();
+        const LightSource source = laser::laserBehindPane();
         for (int trial = 0; trial < trials; trial++)
         {
             scenes::Random random(2980 + trial);
@@ -323,7 +290,7 @@ TEST_CASE("Steps of a block behind two panes, many rigs", "[.][monte-carlo][two_
 TEST_CASE("Derivatives of an emitter's sheet are those of differences", "[laser][two_panes]")
 {
     scenes::Random random(2977);
-    const LightSource source = laserBehindPane();
+    const LightSource source = laser::laserBehindPane();
     const EmitterPrior prior = drawing(source.emitter, random);
     const Calibration calibration = laser::camera();
     std::vector<Point2d> pixels;
@@ -410,7 +377,7 @@ TEST_CASE("Derivatives of an emitter's sheet are those of differences", "[laser]
 
 TEST_CASE("A sheet that crosses its window straight is a plane, with and without its emitter", "[laser][two_panes]")
 {
-    LightSource source = laserBehindPane();
+    LightSource source = laser::laserBehindPane();
     source.emitter.camera = copyWithWindow(source.emitter.camera, GlassWindow(Vec3d(0, 0.1, 1), 8., 1.52, 30., 1.333));
     source.emitter.camera->setImageSize(Size(400, 1200));
     scenes::Random random(2979);
@@ -427,7 +394,7 @@ TEST_CASE("A sheet that crosses its window straight is a plane, with and without
 
 TEST_CASE("An emitter's sheet comes back from its file, and one that sends no light is refused", "[laser][two_panes]")
 {
-    LightSource source = laserBehindPane();
+    LightSource source = laser::laserBehindPane();
     scenes::Random random(2978);
     const Calibration truth = laser::camera();
     const Images images(truth, source, 6, random);
