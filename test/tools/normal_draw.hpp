@@ -13,10 +13,8 @@ namespace scenes {
 //! S with S S^T = C. What has no variance has a row of exact zeros.
 inline Eigen::MatrixXd rootOf(const Eigen::MatrixXd& C)
 {
-    const Eigen::VectorXd std = C.diagonal().cwiseMax(0.).cwiseSqrt();
-    const Eigen::VectorXd inverse = std.unaryExpr([](double s) { return s > 0. ? 1./s : 0.; });
-    const cv::refract::SymmetricEigen eigen(inverse.asDiagonal()*C*inverse.asDiagonal());
-    return std.asDiagonal()*eigen.vectors*eigen.values.cwiseMax(0.).cwiseSqrt().asDiagonal();
+    const cv::refract::CorrelationSpectrum spectrum(C);
+    return spectrum.root(spectrum.rank());
 }
 
 //! Of the covariance root root^T.

@@ -5,10 +5,13 @@
 #include "calibrate/parameter_columns.hpp"
 #include "calibrate/units.hpp"
 #include "console/table.hpp"
+#include "math/dense.hpp"
+#include "measure/eigen_matrix.hpp"
 #include "measure/point_error.hpp"
 #include <cmath>
 
 using namespace cv;
+using namespace cv::refract;
 
 namespace tools {
 
@@ -116,14 +119,9 @@ double commonStd(const Source& source)
 //! W^(1/2), a column each direction that has a variance.
 Mat rootOfInformation(const Mat& prior)
 {
-    const SVD svd(prior);
-    int rank = 0;
-    while (rank < svd.w.rows && svd.w.at<double>(rank) > 1e-12*svd.w.at<double>(0))
-        rank++;
-    Mat root = svd.u.colRange(0, rank).clone();
-    for (int i = 0; i < rank; i++)
-        root.col(i) /= std::sqrt(svd.w.at<double>(i));
-    return root;
+    const double NOTHING = 1e-12;
+    const CorrelationSpectrum spectrum(toEigen(prior));
+    return toMat(spectrum.inverseRoot(spectrum.rank(NOTHING)));
 }
 
 //! Mean squares of the errors of points in the working volume, and of their part that is pixel noise.

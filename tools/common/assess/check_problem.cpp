@@ -17,19 +17,15 @@ namespace {
 const int ITERATIONS = 10, HALVINGS = 6;
 const double CONVERGED = 1e-3;          // of chi^2, which then is known to far less than 1
 
-//! L of C = L L^T; parameters are of all sizes, so their correlations are decomposed.
+//! L of C = L L^T.
 MatrixXd rootOf(const MatrixXd& C)
 {
-    const VectorXd std = C.diagonal().cwiseMax(0.).cwiseSqrt();
-    const VectorXd inverse = std.unaryExpr([](double s) { return s > 0. ? 1./s : 0.; });
-    const SymmetricEigen eigen(inverse.asDiagonal()*C*inverse.asDiagonal());
     const double NOTHING = 1e-13;
-    const VectorXd& values = eigen.values;
-    const Eigen::Index zeros = (values.array() <= NOTHING*values.cwiseMax(0.).sum()).count();
-    const Eigen::Index rank = values.size() - zeros;
+    const CorrelationSpectrum spectrum(C);
+    const int rank = spectrum.rank(NOTHING);
     if (rank == 0)          // an exact calibration: one direction along which nothing moves, as Eigen wants a column
         return MatrixXd::Zero(C.rows(), 1);
-    return std.asDiagonal()*eigen.vectors.rightCols(rank)*values.tail(rank).cwiseSqrt().asDiagonal();
+    return spectrum.root(rank);
 }
 
 //! Of L, which has full column rank; its rows are of all sizes.

@@ -13,19 +13,6 @@ using namespace cv::refract;
 
 namespace tools {
 
-namespace {
-
-//! H with H H^T = covariance.
-MatrixXd rootOf(const MatrixXd& covariance)
-{
-    const VectorXd deviations = covariance.diagonal().cwiseMax(0.).cwiseSqrt();
-    const VectorXd inverse = (deviations.array() > 0.).select(deviations.cwiseInverse(), 0.);
-    const SymmetricEigen correlation(inverse.asDiagonal()*covariance*inverse.asDiagonal());
-    return deviations.asDiagonal()*correlation.vectors*correlation.values.cwiseMax(0.).cwiseSqrt().asDiagonal();
-}
-
-} // namespace
-
 void HeldOutTest::add(const HeldOutTest& other)
 {
     squares += other.squares;
@@ -46,7 +33,8 @@ double HeldOutTest::calibrationRatio() const
 
 HeldOutTest testHeldOut(const RigModel& rig, const Mat& covariance, double sigma, const std::vector<View>& views)
 {
-    const MatrixXd H = rootOf(toEigen(covariance));
+    const CorrelationSpectrum spectrum(toEigen(covariance));
+    const MatrixXd H = spectrum.root(spectrum.rank());      // H H^T = covariance
     MatrixXd AH(0, H.cols());
     VectorXd r(0);
     for (const View& view : views)

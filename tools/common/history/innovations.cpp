@@ -12,17 +12,12 @@ namespace {
 
 const double NOTHING = 1e-9;        // of the largest eigenvalue of a correlation
 
-//! root and inverse of V, whose rows are of all sizes.
 void decompose(const MatrixXd& V, Innovation& innovation)
 {
-    const VectorXd std = V.diagonal().cwiseMax(0.).cwiseSqrt();
-    const VectorXd scale = std.unaryExpr([](double s) { return s > 0. ? 1./s : 0.; });
-    const SymmetricEigen eigen(scale.asDiagonal()*V*scale.asDiagonal());
-    const VectorXd& values = eigen.values;
-    const Eigen::Index rank = (values.array() > NOTHING*values.cwiseMax(0.).sum()).count();
-    const MatrixXd vectors = eigen.vectors.rightCols(rank);
-    innovation.root = std.asDiagonal()*vectors*values.tail(rank).cwiseSqrt().asDiagonal();
-    const MatrixXd inverseRoot = scale.asDiagonal()*vectors*values.tail(rank).cwiseSqrt().cwiseInverse().asDiagonal();
+    const CorrelationSpectrum spectrum(V);
+    const int rank = spectrum.rank(NOTHING);
+    innovation.root = spectrum.root(rank);
+    const MatrixXd inverseRoot = spectrum.inverseRoot(rank);
     innovation.inverse = timesTranspose(inverseRoot, inverseRoot);
 }
 

@@ -2,9 +2,6 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-/* C = D R D with the standard deviations D and the correlations R = U L U^T:  W = L^-1/2 U^T D^-1. The parameters' sizes differ
-by orders, the correlations do not. */
-
 #include "adjust/rig_prior.hpp"
 #include "math/dense.hpp"
 
@@ -14,13 +11,13 @@ namespace cv { namespace refract {
 what is as large as the lowest is negative. */
 static const double ROUNDING = 1e-10;
 
-//! L^-1/2 U^T of correlations U L U^T.
-static Eigen::MatrixXd inverseRoot(const Eigen::MatrixXd& correlations)
+//! W, W^T W = C^-1.
+static Eigen::MatrixXd inverseRoot(const Eigen::MatrixXd& C)
 {
-    const SymmetricEigen eigen(correlations);
-    const double rounding = std::max(ROUNDING*eigen.values.maxCoeff(), -eigen.values.minCoeff());
-    const Eigen::VectorXd roots = eigen.values.cwiseMax(rounding).cwiseSqrt().cwiseInverse();
-    return roots.asDiagonal()*eigen.vectors.transpose();
+    const CorrelationSpectrum spectrum(C);
+    const double rounding = std::max(ROUNDING*spectrum.values.maxCoeff(), -spectrum.values.minCoeff());
+    const Eigen::VectorXd roots = spectrum.values.cwiseMax(rounding).cwiseSqrt().cwiseInverse();
+    return roots.asDiagonal()*spectrum.vectors.transpose()*spectrum.inverseDeviations.asDiagonal();
 }
 
 Eigen::MatrixXd whiten(const Eigen::MatrixXd& C, const Eigen::MatrixXd& B)
@@ -29,7 +26,7 @@ Eigen::MatrixXd whiten(const Eigen::MatrixXd& C, const Eigen::MatrixXd& B)
     const Eigen::VectorXd inverse = C.diagonal().cwiseSqrt().cwiseInverse();
     if (root.isPositiveDefinite() && root.L().diagonal().cwiseProduct(inverse).minCoeff() > std::sqrt(ROUNDING))
         return root.solveL(B);
-    return product(inverseRoot(inverse.asDiagonal()*C*inverse.asDiagonal())*inverse.asDiagonal(), B);
+    return product(inverseRoot(C), B);
 }
 
 RigPrior makeRigPrior(const Eigen::VectorXd& mean, const Eigen::MatrixXd& directions, const Eigen::MatrixXd& covariance)
@@ -39,10 +36,7 @@ RigPrior makeRigPrior(const Eigen::VectorXd& mean, const Eigen::MatrixXd& direct
     prior.sqrtInformation.resize(0, mean.size());
     if (covariance.rows() == 0)
         return prior;
-    const Eigen::VectorXd inverse = covariance.diagonal().cwiseSqrt().cwiseInverse();
-    const Eigen::MatrixXd symmetric = 0.5*(covariance + covariance.transpose());
-    const Eigen::MatrixXd root = inverseRoot(inverse.asDiagonal()*symmetric*inverse.asDiagonal());
-    prior.sqrtInformation = timesTranspose(root*inverse.asDiagonal(), directions);
+    prior.sqrtInformation = timesTranspose(inverseRoot(0.5*(covariance + covariance.transpose())), directions);
     return prior;
 }
 

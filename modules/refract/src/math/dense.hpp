@@ -122,6 +122,21 @@ struct SymmetricEigen
     Eigen::MatrixXd vectors;
 };
 
+/** C = D R D of a covariance: the deviations D of parameters, whose sizes differ by orders, and their correlations R = U diag(values) U^T.
+What has no variance has no part in anything. */
+struct CorrelationSpectrum
+{
+    explicit CorrelationSpectrum(const MatrixRef& C);
+    //! Values above this part of their sum, the last ones.
+    int rank(double nothing = 0) const;
+    Eigen::MatrixXd root(int rank) const;                       //!< S = D U sqrt(values), S S^T = C: a column for each of the last values
+    Eigen::MatrixXd inverseRoot(int rank) const;                //!< T = D^-1 U / sqrt(values), T T^T = C^-1, T^T S = 1
+
+    Eigen::VectorXd deviations, inverseDeviations;              //!< both 0 where there is no variance
+    Eigen::VectorXd values;                                     //!< ascend
+    Eigen::MatrixXd vectors;
+};
+
 //! As SymmetricEigen, of 3 x 3.
 struct SymmetricEigen3
 {

@@ -18,6 +18,26 @@ SymmetricEigen::SymmetricEigen(const MatrixRef& A)
     vectors = eigen.eigenvectors();
 }
 
+CorrelationSpectrum::CorrelationSpectrum(const MatrixRef& C) : deviations(C.diagonal().cwiseMax(0.).cwiseSqrt())
+{
+    inverseDeviations = deviations.unaryExpr([](double d) { return d > 0 ? 1/d : 0.; });
+    SymmetricEigen eigen(inverseDeviations.asDiagonal()*C*inverseDeviations.asDiagonal());
+    values = std::move(eigen.values);
+    vectors = std::move(eigen.vectors);
+}
+
+int CorrelationSpectrum::rank(double nothing) const { return (int)(values.array() > nothing*values.cwiseMax(0.).sum()).count(); }
+
+MatrixXd CorrelationSpectrum::root(int rank) const
+{
+    return deviations.asDiagonal()*vectors.rightCols(rank)*values.tail(rank).cwiseSqrt().asDiagonal();
+}
+
+MatrixXd CorrelationSpectrum::inverseRoot(int rank) const
+{
+    return inverseDeviations.asDiagonal()*vectors.rightCols(rank)*values.tail(rank).cwiseSqrt().cwiseInverse().asDiagonal();
+}
+
 SymmetricEigen3::SymmetricEigen3(const Eigen::Matrix3d& A)
 {
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(A);
