@@ -4,9 +4,7 @@
 #ifndef REFRACT_TOOLS_RELAXED_FIT_HPP
 #define REFRACT_TOOLS_RELAXED_FIT_HPP
 
-#include "calibrate/fit.hpp"
-#include "measure/eigen_matrix.hpp"
-#include "measure/view_observations.hpp"
+#include "diagnose/relaxed_problem.hpp"
 #include <cmath>
 
 /* A calibration fitted again to the same images, with more free than it had. Gauss-Newton from where the calibration is, which is near:
@@ -38,7 +36,7 @@ public:
     //! @param noise px, standard deviation of a coordinate
     RelaxedFit(const RigData& data, const Fit& fit, bool posesKnown, double noise);
 
-    const RigModel& rig() const { return rig_; }
+    const RigModel& rig() const { return problem_.rig; }
     double noise() const { return noise_; }
     //! Coordinates and priors, less what the calibration estimated.
     double dof() const { return dof_; }
@@ -55,27 +53,14 @@ public:
 private:
     struct Normal;
     struct Rows;
-    //! Of a distance that is held by the calibration: where it is among the rig's numbers and in free_, and how large it may be.
-    struct Bound
-    {
-        int number, column;
-        double most;
-    };
     Rows rowsOf(const Relaxed& at, size_t view, const std::vector<MatrixXd>& changes) const;
     Normal linearize(const Relaxed& at, const std::vector<Shift>& freed) const;
     bool setRigs(const std::vector<Shift>& freed, Relaxed& at) const;
     bool move(const Normal& normal, const std::vector<Shift>& freed, const VectorXd& step, Relaxed& at) const;
-    double priorOf(const VectorXd& numbers) const;
     VectorXd stepFrom(const Relaxed& at, const Normal& normal, double damping) const;
 
-    RigModel rig_;
+    RelaxedProblem problem_;
     Relaxed start_;
-    MatrixXd free_;                     //!< columns: changes of the numbers of the rig that the calibration estimated
-    MatrixXd information_;              //!< of priors
-    VectorXd known_;                    //!< their means
-    std::vector<MatrixXd> poseInformation_;     //!< of each view; empty: nothing is known; infinite: exact
-    std::vector<VectorXd> knownPoses_;
-    std::vector<Bound> bounds_;
     double noise_, dof_;
 };
 
