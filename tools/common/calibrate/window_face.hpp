@@ -39,6 +39,9 @@ double glassOf(const cv::refract::GlassWindow& window);
 //! "window", "dome", "tube", "bent window"
 const char* nameOfShape(const cv::refract::GlassWindow& window);
 
+//! On its two sides.
+inline bool hasDifferentMedia(const cv::refract::GlassWindow& window) { return window.innerIndex != window.outerIndex; }
+
 //! It has a centre and a radius.
 inline bool isRound(const cv::refract::GlassWindow& window)
 {
