@@ -8,7 +8,6 @@
 #include "console/cli.hpp"
 #include "console/file_output.hpp"
 #include "console/frames.hpp"
-#include "console/images.hpp"
 #include "console/outputs.hpp"
 #include "console/progress.hpp"
 #include "console/table.hpp"
@@ -17,8 +16,10 @@
 #include "stereo/depth_comparison.hpp"
 #include "stereo/depth_picture.hpp"
 #include "stereo/depth_search.hpp"
+#include "stereo/pair_reader.hpp"
 #include "stereo/raw_depth.hpp"
 #include "stereo/rectified_pictures.hpp"
+#include "stereo/stereo_table.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -76,15 +77,6 @@ struct Options
 struct PairFiles
 {
     std::string cloud, depthMap, picture, rectifiedPrefix;
-};
-
-//! What the table says of a pair.
-struct PairResult
-{
-    std::string stem;
-    double matched = 0, near = 0, far = 0, typicalSigma = NAN, rowsFound = NAN, rowsExpected = NAN, seconds = 0;
-    std::vector<std::string> warnings;
-    std::string refusal;                //!< empty: it is written
 };
 
 void requirePly(const std::string& cloud)
@@ -167,34 +159,6 @@ void refuseOverwriting(const Options& options, const std::string& settings, cons
     checkOutputs(outputs, inputs);
 }
 
-//! Of both cameras, 8-bit, of the size that was calibrated.
-class PairReader
-{
-public:
-    PairReader(Frames& first, Frames& second, const Calibration& rig, bool needsColour)
-        : first_(first), second_(second), rig_(rig), needsColour_(needsColour) {}
-
-    std::pair<cv::Mat, cv::Mat> read(const FramePair& pair)
-    {
-        cv::Mat image1 = first_.read(pair.first), image2 = second_.read(pair.second);
-        requireSize(image1, first_.name(pair.first), rig_.cameras[0].camera->imageSize());
-        requireSize(image2, second_.name(pair.second), rig_.cameras[1].camera->imageSize());
-        if (image1.size() != image2.size())
-            throw Failure(format("the images of the cameras are %dx%d and %dx%d pixels: refract_stereo is for two of one size",
-                                 image1.cols, image1.rows, image2.cols, image2.rows));
-        if (needsColour_ && (image1.channels() != 3 || image2.channels() != 3))
-            throw Failure("'" + (image1.channels() != 3 ? first_.name(pair.first) : second_.name(pair.second))
-                          + "' is a grey image: --channels is for colours, leave it out");
-        makeEightBit(image1, image2);
-        return {image1, image2};
-    }
-
-private:
-    Frames &first_, &second_;
-    const Calibration& rig_;
-    bool needsColour_;
-};
-
 //! From several pairs, as a scene may change.
 cv::Vec2d foundRange(const Calibration& rig, PairReader& reader, const std::vector<FramePair>& pairs, const Command& command)
 {
@@ -229,26 +193,6 @@ double typicalSigmaZ(const Cloud& cloud)
         return std::numeric_limits<double>::quiet_NaN();
     std::nth_element(known.begin(), known.begin() + known.size()/2, known.end());
     return known[known.size()/2];
-}
-
-//! NaN: nothing tells.
-std::string orUnknown(double value, const char* how)
-{
-    return std::isnan(value) ? "unknown" : format(how, value);
-}
-
-void printComparison(const DepthComparison& c)
-{
-    Table table({"against the true depth", ""});
-    table.add({"pixels with a true depth", std::to_string(c.known)});
-    const auto percent = [](int part, int of, const char* how) { return of > 0 ? format(how, 100.*part/of) : "none"; };
-    table.add({"of these matched", percent(c.matched, c.known, "%.1f %%")});
-    table.add({format("of these wrong (over %g %% off)", 100*WRONG_DEPTH), percent(c.wrong, c.matched, "%.2f %%")});
-    table.add({"RMS error of the others", orUnknown(c.rms, "%.4g")});
-    if (c.stated)
-        table.add({"points whose error is less than 1.96 sz (95 % expected)", format("%.1f %%", 100.*c.within/c.stated)});
-    table.print(std::cout);
-    std::cout << std::endl;
 }
 
 class Tool
@@ -316,52 +260,6 @@ private:
     StereoChecker checker_;             // of rig_
     DepthComparison comparison_;
 };
-
-std::string rowsFound(const PairResult& r)
-{
-    return std::isnan(r.rowsFound) ? "unknown" : format("%.2f of %.2f", r.rowsFound, r.rowsExpected);
-}
-
-std::vector<std::string> rowOf(const PairResult& r, const RectifiedRig& rig)
-{
-    return {r.stem, format("%.1f %%", 100*r.matched), format("%.5g ... %.5g", r.near, r.far), orUnknown(r.typicalSigma, "%.3g"),
-            format("%.2f, %.2f", rig.rowError[0], rig.rowError[1]), rowsFound(r), format("%.1f", r.seconds)};
-}
-
-//! All pairs in one row: means, the whole range, the worst rows.
-PairResult summaryOf(const std::vector<PairResult>& results)
-{
-    PairResult all = results[0];
-    all.stem = format("all %d pairs", (int)results.size());
-    all.matched = all.typicalSigma = all.seconds = 0;
-    const auto isKnown = [](const PairResult& r) { return !std::isnan(r.typicalSigma); };
-    const auto known = (double)std::count_if(results.begin(), results.end(), isKnown);
-    for (const PairResult& r : results)
-    {
-        all.matched += r.matched/(double)results.size();
-        all.typicalSigma += isKnown(r) ? r.typicalSigma : 0;
-        all.near = std::min(all.near, r.near);
-        all.far = std::max(all.far, r.far);
-        all.rowsFound = std::fmax(all.rowsFound, r.rowsFound);
-        all.rowsExpected = std::fmax(all.rowsExpected, r.rowsExpected);
-        all.seconds += r.seconds;
-    }
-    all.typicalSigma /= known;
-    return all;
-}
-
-void printTable(const std::vector<PairResult>& results, const RectifiedRig& rig)
-{
-    const size_t most = 30;     // rows that one reads
-    const std::string unit = rig.calibration().unit, in = unit.empty() ? "" : ", " + unit;
-    Table table({"", "pixels matched", "depth z" + in, "median sz" + in, "rows stated, px", "rows found, px", "seconds"});
-    if (results.size() <= most)
-        for (const PairResult& r : results)
-            table.add(rowOf(r, rig));
-    if (results.size() > 1)
-        table.add(rowOf(summaryOf(results), rig));
-    table.print(std::cout);
-}
 
 //! False if the row errors are beyond the caller's limit.
 bool areRowsWithin(const Options& options, const std::vector<PairResult>& results, const Command& command)

@@ -1,0 +1,84 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#include "stereo/stereo_table.hpp"
+#include "console/table.hpp"
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+
+using cv::format;
+
+namespace tools {
+
+namespace {
+
+//! NaN: nothing tells.
+std::string orUnknown(double value, const char* how)
+{
+    return std::isnan(value) ? "unknown" : format(how, value);
+}
+
+std::string rowsFound(const PairResult& r)
+{
+    return std::isnan(r.rowsFound) ? "unknown" : format("%.2f of %.2f", r.rowsFound, r.rowsExpected);
+}
+
+std::vector<std::string> rowOf(const PairResult& r, const RectifiedRig& rig)
+{
+    return {r.stem, format("%.1f %%", 100*r.matched), format("%.5g ... %.5g", r.near, r.far), orUnknown(r.typicalSigma, "%.3g"),
+            format("%.2f, %.2f", rig.rowError[0], rig.rowError[1]), rowsFound(r), format("%.1f", r.seconds)};
+}
+
+//! All pairs in one row: means, the whole range, the worst rows.
+PairResult summaryOf(const std::vector<PairResult>& results)
+{
+    PairResult all = results[0];
+    all.stem = format("all %d pairs", (int)results.size());
+    all.matched = all.typicalSigma = all.seconds = 0;
+    const auto isKnown = [](const PairResult& r) { return !std::isnan(r.typicalSigma); };
+    const auto known = (double)std::count_if(results.begin(), results.end(), isKnown);
+    for (const PairResult& r : results)
+    {
+        all.matched += r.matched/(double)results.size();
+        all.typicalSigma += isKnown(r) ? r.typicalSigma : 0;
+        all.near = std::min(all.near, r.near);
+        all.far = std::max(all.far, r.far);
+        all.rowsFound = std::fmax(all.rowsFound, r.rowsFound);
+        all.rowsExpected = std::fmax(all.rowsExpected, r.rowsExpected);
+        all.seconds += r.seconds;
+    }
+    all.typicalSigma /= known;
+    return all;
+}
+
+} // namespace
+
+void printTable(const std::vector<PairResult>& results, const RectifiedRig& rig)
+{
+    const size_t most = 30;     // rows that one reads
+    const std::string unit = rig.calibration().unit, in = unit.empty() ? "" : ", " + unit;
+    Table table({"", "pixels matched", "depth z" + in, "median sz" + in, "rows stated, px", "rows found, px", "seconds"});
+    if (results.size() <= most)
+        for (const PairResult& r : results)
+            table.add(rowOf(r, rig));
+    if (results.size() > 1)
+        table.add(rowOf(summaryOf(results), rig));
+    table.print(std::cout);
+}
+
+void printComparison(const DepthComparison& c)
+{
+    Table table({"against the true depth", ""});
+    table.add({"pixels with a true depth", std::to_string(c.known)});
+    const auto percent = [](int part, int of, const char* how) { return of > 0 ? format(how, 100.*part/of) : "none"; };
+    table.add({"of these matched", percent(c.matched, c.known, "%.1f %%")});
+    table.add({format("of these wrong (over %g %% off)", 100*WRONG_DEPTH), percent(c.wrong, c.matched, "%.2f %%")});
+    table.add({"RMS error of the others", orUnknown(c.rms, "%.4g")});
+    if (c.stated)
+        table.add({"points whose error is less than 1.96 sz (95 % expected)", format("%.1f %%", 100.*c.within/c.stated)});
+    table.print(std::cout);
+    std::cout << std::endl;
+}
+
+} // namespace tools
