@@ -4,7 +4,7 @@
 // Two cameras sealed in domes under water. Focal length and centre of a dome are hardly told apart by such images: the likelihood is
 // flat along a bent valley, on which derivatives at one point tell nothing of the others.
 #include "round_scenes.hpp"
-#include "start/refit.hpp"
+#include "refit_call.hpp"
 
 using namespace cv;
 using namespace cv::refract;
@@ -43,7 +43,7 @@ std::vector<double> overStated(unsigned seed)
     std::vector<double> ratios;
     try
     {
-        call.run(GLASS_FREE_INTRINSICS | GLASS_FREE_EXTRINSICS | FROM_EARLIER_FIT);
+        refit(call, GLASS_FREE_INTRINSICS | GLASS_FREE_EXTRINSICS);
     }
     catch (const CalibrationError& e)
     {

@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // The search for the best of several minima: successive halving, and from the best to its neighbours.
-#include "rig_scenes.hpp"
+#include "refit_call.hpp"
 #include "start/multi_start.hpp"
-#include "start/refit.hpp"
 #include "start/shared_window.hpp"
 #include "window/place.hpp"
 
@@ -125,10 +124,11 @@ TEST_CASE("A fit from an earlier one looks for no other minimum, unless it has t
     GlassWindow other = best;
     other.normal = Vec3d(call.otherMinima.ptr<double>());
 
+    CHECK_THROWS_WITH(call.run(FROM_EARLIER_FIT), Catch::Contains("flags is 1073741824"));
     const auto fitFrom = [&](const GlassWindow& window)
     {
         call.cameras[0]->setWindow(window);
-        return call.run(FROM_EARLIER_FIT);
+        return refit(call, 0);
     };
     CHECK(fitFrom(best) == Approx(rms).epsilon(1e-9));
     CHECK(norm(call.cameras[0]->window().normal - best.normal) < 1e-6);

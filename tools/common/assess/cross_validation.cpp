@@ -5,8 +5,8 @@
 #include "measure/measurement.hpp"
 #include "calibrate/image_fit.hpp"
 #include "calibrate/pinhole_rig.hpp"
+#include "calibrate/refit.hpp"
 #include "console/failure.hpp"
-#include "start/refit.hpp"
 #include <opencv2/calib3d.hpp>
 #include <algorithm>
 #include <cmath>

@@ -4,9 +4,9 @@
 #include "assess/rig_checks.hpp"
 #include "calibrate/image_fit.hpp"
 #include "calibrate/pinhole_rig.hpp"
+#include "calibrate/refit.hpp"
 #include "calibrate/window_face.hpp"
 #include "console/progress.hpp"
-#include "start/refit.hpp"
 #include <algorithm>
 #include <cmath>
 

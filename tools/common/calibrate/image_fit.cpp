@@ -5,6 +5,7 @@
 #include "calibrate/fit_error.hpp"
 #include "calibrate/estimated_parameters.hpp"
 #include "calibrate/parameter_columns.hpp"
+#include "calibrate/refit.hpp"
 #include <algorithm>
 #include <cmath>
 
@@ -137,11 +138,11 @@ Fit fitImages(const RigData& data, const RigModel& start, const std::vector<int>
                                 flags & GLASS_ROBUST ? std::min(maxIterations, MAX_ROBUST_ITERATIONS) : maxIterations, 1e-12);
     try
     {
-        fit.rms = calibrateGlassRig(objectPoints, imagesOf(data, views, false), imagesOf(data, views, true), fit.rig.cameras,
-                                    fit.rig.windows, Rs, Ts, fit.rvecs, fit.tvecs, fit.stdDeviations, fit.covariance, noArray(),
-                                    fit.imageStatus, fit.inliers, fit.otherMinima, fit.rig.targetCovariance, targetErrors,
-                                    data.cameraCount == 1 ? flags : flags | GLASS_FREE_EXTRINSICS, poseCovariances, criteria,
-                                    covariancesOf(fit.rig));
+        fit.rms = fitGlassRig(objectPoints, imagesOf(data, views, false), imagesOf(data, views, true), fit.rig.cameras,
+                              fit.rig.windows, Rs, Ts, fit.rvecs, fit.tvecs, fit.stdDeviations, fit.covariance, noArray(),
+                              fit.imageStatus, fit.inliers, fit.otherMinima, fit.rig.targetCovariance, targetErrors,
+                              data.cameraCount == 1 ? flags : flags | GLASS_FREE_EXTRINSICS, poseCovariances, criteria,
+                              covariancesOf(fit.rig));
     }
     catch (const CalibrationError& e)
     {

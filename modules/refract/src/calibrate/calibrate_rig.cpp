@@ -6,8 +6,8 @@
 
 #include "calibrate/calibrate_rig.hpp"
 #include "calibrate/calibration_error.hpp"
+#include "calibrate/refit.hpp"
 #include "start/pose_start.hpp"
-#include "start/refit.hpp"
 #include "start/rig_task.hpp"
 #include "math/covariance_matrix.hpp"
 #include "math/rotation.hpp"
@@ -468,6 +468,30 @@ static RigFit calibrate(InputArrayOfArrays objectPoints, const std::vector<std::
     return fit;
 }
 
+//! Of all calibrations of rigs.
+static const int RIG_FLAGS = MONO_FLAGS | GLASS_FREE_EXTRINSICS | GLASS_FIX_NORMAL;
+
+double fitGlassRig(InputArrayOfArrays objectPoints, const std::vector<std::vector<Mat> >& imagePointsDirect,
+                   const std::vector<std::vector<Mat> >& imagePointsRefracted, const std::vector<Ptr<RefractiveCamera> >& cameras,
+                   const std::vector<int>& windowOfCamera, InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts,
+                   InputOutputArrayOfArrays rvecs, InputOutputArrayOfArrays tvecs, OutputArray stdDeviations, OutputArray covariance,
+                   OutputArray perViewErrors, OutputArray imageStatus, OutputArrayOfArrays inliers, OutputArray otherMinima,
+                   InputArray targetCovariance, OutputArray targetErrors, int flags, InputArrayOfArrays poseCovariances,
+                   TermCriteria criteria, InputArrayOfArrays cameraCovariances,
+                   const std::vector<std::vector<Mat> >& pixelCovariancesDirect,
+                   const std::vector<std::vector<Mat> >& pixelCovariancesRefracted)
+{
+    const RigFit fit = calibrate(objectPoints, imagePointsDirect, imagePointsRefracted, cameras, windowOfCamera, Rs, Ts,
+                                 rvecs, tvecs, flags, poseCovariances, criteria, cameraCovariances, targetCovariance,
+                                 pixelCovariancesDirect, pixelCovariancesRefracted, stdDeviations.needed() || covariance.needed());
+    writeFit(fit, rvecs, tvecs, stdDeviations, covariance, perViewErrors);
+    writeMat(fit.imageStatus, imageStatus);
+    writeMasks(fit.inliers, inliers);
+    writeMat(fit.otherMinima, otherMinima);
+    writeMat(fit.targetErrors, targetErrors);
+    return fit.rms;
+}
+
 double calibrateGlassRig(InputArrayOfArrays objectPoints,
                          const std::vector<std::vector<Mat> >& imagePointsDirect,
                          const std::vector<std::vector<Mat> >& imagePointsRefracted,
@@ -498,16 +522,10 @@ double calibrateGlassRig(InputArrayOfArrays objectPoints,
 {
     CV_INSTRUMENT_REGION();
 
-    checkFlags(flags, MONO_FLAGS | GLASS_FREE_EXTRINSICS | GLASS_USE_POSES | GLASS_FIX_NORMAL | FROM_EARLIER_FIT);
-    const RigFit fit = calibrate(objectPoints, imagePointsDirect, imagePointsRefracted, cameras, windowOfCamera, Rs, Ts,
-                                 rvecs, tvecs, flags, poseCovariances, criteria, cameraCovariances, targetCovariance,
-                                 pixelCovariancesDirect, pixelCovariancesRefracted, stdDeviations.needed() || covariance.needed());
-    writeFit(fit, rvecs, tvecs, stdDeviations, covariance, perViewErrors);
-    writeMat(fit.imageStatus, imageStatus);
-    writeMasks(fit.inliers, inliers);
-    writeMat(fit.otherMinima, otherMinima);
-    writeMat(fit.targetErrors, targetErrors);
-    return fit.rms;
+    checkFlags(flags, RIG_FLAGS | GLASS_USE_POSES);
+    return fitGlassRig(objectPoints, imagePointsDirect, imagePointsRefracted, cameras, windowOfCamera, Rs, Ts, rvecs, tvecs,
+                       stdDeviations, covariance, perViewErrors, imageStatus, inliers, otherMinima, targetCovariance, targetErrors,
+                       flags, poseCovariances, criteria, cameraCovariances, pixelCovariancesDirect, pixelCovariancesRefracted);
 }
 
 double calibrateGlassRig(InputArrayOfArrays objectPoints, const std::vector<std::vector<Mat> >& imagePointsDirect,
@@ -518,7 +536,7 @@ double calibrateGlassRig(InputArrayOfArrays objectPoints, const std::vector<std:
 {
     CV_INSTRUMENT_REGION();
 
-    checkFlags(flags, MONO_FLAGS | GLASS_FREE_EXTRINSICS | GLASS_FIX_NORMAL);
+    checkFlags(flags, RIG_FLAGS);
     const RigFit fit = calibrate(objectPoints, imagePointsDirect, imagePointsRefracted, cameras, windowOfCamera, Rs, Ts,
                                  noArray(), noArray(), flags, noArray(), criteria, noArray(), noArray(), {}, {}, false);
     writeFit(fit, rvecs, tvecs, noArray(), noArray(), noArray());

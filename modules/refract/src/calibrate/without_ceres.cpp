@@ -4,7 +4,7 @@
 
 /* What is compiled in place of the calibrators where there is no Ceres (cmake/ceres.cmake). */
 
-#include "precomp.hpp"
+#include "calibrate/refit.hpp"
 
 #ifdef REFRACT_WITHOUT_CERES
 
@@ -79,6 +79,15 @@ double calibrateGlassRig(InputArrayOfArrays, const std::vector<std::vector<Mat> 
 double calibrateGlassRig(InputArrayOfArrays, const std::vector<std::vector<Mat> >&, const std::vector<std::vector<Mat> >&,
                          const std::vector<Ptr<RefractiveCamera> >&, const std::vector<int>&, InputOutputArrayOfArrays,
                          InputOutputArrayOfArrays, OutputArrayOfArrays, OutputArrayOfArrays, int, TermCriteria)
+{
+    throwWithoutCeres("calibrateGlassRig");
+}
+
+double fitGlassRig(InputArrayOfArrays, const std::vector<std::vector<Mat> >&, const std::vector<std::vector<Mat> >&,
+                   const std::vector<Ptr<RefractiveCamera> >&, const std::vector<int>&, InputOutputArrayOfArrays,
+                   InputOutputArrayOfArrays, InputOutputArrayOfArrays, InputOutputArrayOfArrays, OutputArray, OutputArray,
+                   OutputArray, OutputArray, OutputArrayOfArrays, OutputArray, InputArray, OutputArray, int, InputArrayOfArrays,
+                   TermCriteria, InputArrayOfArrays, const std::vector<std::vector<Mat> >&, const std::vector<std::vector<Mat> >&)
 {
     throwWithoutCeres("calibrateGlassRig");
 }

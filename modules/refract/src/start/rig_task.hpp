@@ -21,7 +21,7 @@ struct RigTask
     TermCriteria criteria;
     bool wantsJacobian = false;
     bool wantsCovariance = true;                //!< as it holds; else only whether it exists, and as derivatives have it
-    bool isRefit = false;                       //!< FROM_EARLIER_FIT (refit.hpp)
+    bool isRefit = false;                       //!< starts where an earlier fit has ended: no other minima are looked for
 
     bool isRobust() const { return (flags & GLASS_ROBUST) != 0; }
     //! Neither direct images nor poses.

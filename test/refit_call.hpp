@@ -1,0 +1,24 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+// A call of calibrateGlassRig that goes on from where an earlier one has ended.
+#ifndef REFRACT_TEST_REFIT_CALL_HPP
+#define REFRACT_TEST_REFIT_CALL_HPP
+
+#include "calibrate/refit.hpp"
+#include "rig_scenes.hpp"
+
+namespace scenes {
+
+inline double refit(RigCall& call, int flags)
+{
+    return cv::refract::fitGlassRig(call.object, call.direct, call.refracted, call.cameras, call.windows, call.Rs, call.Ts, call.rvecs,
+                                    call.tvecs, call.deviations, call.covariance, call.perViewErrors, call.imageStatus, call.inliers,
+                                    call.otherMinima, cv::noArray(), cv::noArray(), flags | cv::refract::FROM_EARLIER_FIT,
+                                    call.poseCovariances,
+                                    cv::TermCriteria(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 1000, 1e-12), cv::noArray());
+}
+
+} // namespace scenes
+
+#endif // REFRACT_TEST_REFIT_CALL_HPP
