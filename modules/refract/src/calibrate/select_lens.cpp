@@ -145,7 +145,8 @@ private:
     //! Views that outliers give no pose, or one with points behind the camera.
     void dropUnusable(const std::vector<Pose>& poses)
     {
-        const Problem problem(given_, task_.views, poses, task_.posePriors, task_.cameraPriors, task_.flags | GLASS_FIX_NORMAL);
+        const Problem problem(given_, task_.views, poses, std::vector<PosePrior>(), std::vector<CameraPrior>(),
+                              task_.flags | GLASS_FIX_NORMAL);
         for (const Image& image : problem.images())
         {
             const std::vector<double> errors = problem.pixelErrors(image);
@@ -202,7 +203,7 @@ private:
                     lens[i] = 0;
             start.rig.cameras[c].setLensParameters(Mat(lens));
         }
-        Problem problem(start.rig, task_.views, start.poses, task_.posePriors, task_.cameraPriors, flags, task_.targetCovariance);
+        Problem problem(start.rig, task_.views, start.poses, std::vector<PosePrior>(), std::vector<CameraPrior>(), flags);
         for (size_t i = 0; i < weights_.size(); i++)
             problem.setRootWeights((int)i, weights_[i]);
         FitOutcome outcome = problem.freedom() > 0 ? minimize(problem, criteria) : FitOutcome(FitOutcome::TOO_FEW_EQUATIONS);
