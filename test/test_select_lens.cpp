@@ -356,3 +356,96 @@ TEST_CASE("Boards parallel to the image do not determine a focal length, and tha
             CHECK(norm(camera->lensParameters(), before) == 0);
         }
 }
+
+namespace {
+
+const std::vector<TrueLens> BETWEEN = { { "k1", false, 1100, { -0.2, 0, 0, 0 }, 1 },
+                                        { "4", false, 1100, { -0.28, 0.09, 2e-3, -1.5e-3 }, 4 } };
+const GlassWindow HOUSING(Vec3d(0.05, -0.03, 1), 10, 1.49, 20, 1.333);
+
+//! Of several calibrations.
+struct Stated
+{
+    double errors = 0, stated = 0, worst = 0;
+    int refused = 0;
+
+    void add(double squaredErrors, double variance)
+    {
+        errors += squaredErrors;
+        stated += variance;
+        worst = std::max(worst, std::sqrt(squaredErrors/variance));
+    }
+};
+
+//! Pixels of points in the water, by the calibration and by the truth.
+void compareWithTruth(const Ptr<RefractiveCamera>& camera, const Ptr<RefractiveCamera>& truth, const Mat& covariance, Stated& result)
+{
+    std::vector<Point3d> points;
+    for (double z : { 550., 700., 850. })
+        for (double x : { -0.3, -0.1, 0.1, 0.3 })
+            for (double y : { -0.24, 0., 0.24 })
+                points.push_back(z*Point3d(x, y, 1));
+    std::vector<Point2d> found, right;
+    Mat status, jacobian;
+    refractiveProjectPoints(points, Vec3d(), Vec3d(), camera, found, status, jacobian);
+    REQUIRE(countNonZero(status) == 0);
+    refractiveProjectPoints(points, Vec3d(), Vec3d(), truth, right);
+    const Mat byCamera = jacobian.colRange(6, jacobian.cols);
+    double squares = 0;
+    for (size_t i = 0; i < points.size(); i++)
+        squares += (found[i] - right[i]).ddot(found[i] - right[i]);
+    result.add(squares, trace(Mat(byCamera*covariance*byCamera.t()))[0]);
+}
+
+//! A hand-held housing: images in air, which choose the lens, and others in water; then all of it.
+void calibrateHousing(const TrueLens& lens, int count, Random& random, Stated& result)
+{
+    const Ptr<RefractiveCamera> truth = lens.camera(HOUSING);
+    const Images air = imagesOf(lens.camera(), count, random), water = imagesOf(truth, count, random);
+    ObjectViews object = air.object;
+    object.insert(object.end(), water.object.begin(), water.object.end());
+    std::vector<Mat> direct = air.pixels, refracted(count);
+    direct.resize(2*count);
+    refracted.insert(refracted.end(), water.pixels.begin(), water.pixels.end());
+    GlassWindow given = HOUSING;
+    given.normal = Vec3d(0, 0, 1);
+    given.distance = 25;
+    const Ptr<RefractiveCamera> bare = lens.start(), camera = lens.start(given);
+    try
+    {
+        const int chosen = selectLensCoefficients(air.object, { air.pixels }, {}, { bare }, {}, noArray(), noArray());
+        camera->setLensParameters(bare->lensParameters());
+        std::vector<Mat> rvecs, tvecs;
+        Mat covariance;
+        calibrateGlass(object, direct, refracted, camera, rvecs, tvecs, noArray(), covariance, noArray(), noArray(),
+                       GLASS_FREE_DISTANCE | GLASS_FREE_INTRINSICS | chosen);
+        compareWithTruth(camera, truth, covariance, result);
+    }
+    catch (const CalibrationError&)
+    {
+        result.refused++;
+    }
+}
+
+} // namespace
+
+// Run with [.lens-choice], TRIALS calibrations of each kind.
+TEST_CASE("Lenses that the data choose: errors over what is stated", "[.lens-choice]")
+{
+    const int TRIALS = trials(20);
+    std::vector<TrueLens> lenses = LENSES;
+    lenses.insert(lenses.end(), BETWEEN.begin(), BETWEEN.end());
+    for (const TrueLens& lens : lenses)
+        for (const int count : { 3, 6, 14, 25 })
+        {
+            Stated result;
+            for (int trial = 0; trial < TRIALS; trial++)
+            {
+                Random random(1000*count + trial);
+                calibrateHousing(lens, count, random, result);
+            }
+            std::cout << "[numbers] " << count << " + " << count << " images, true lens " << lens.name << ": error over stated "
+                      << std::sqrt(result.errors/result.stated) << ", of the worst " << result.worst << "; refused " << result.refused
+                      << " of " << TRIALS << " (seed " << seed() << ")" << std::endl;
+        }
+}
