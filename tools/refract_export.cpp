@@ -22,6 +22,7 @@ static const char MANUAL[] = R"(Tells other programs of cameras behind windows: 
   refract_export calib.yml --to=ros --range=400,1200 --out-dir=DIR         camera1.yaml ... (sensor_msgs/CameraInfo)
   refract_export calib.yml --to=colmap --range=400,1200 [--points=points.csv] --out-dir=DIR
   refract_export calib.yml --to=calibmar --out-dir=DIR                     camera1.yaml ..., with the windows: exact
+  refract_export calib.yml --to=colmap-underwater [--points=points.csv] --out-dir=DIR      the model, with the windows: exact
   refract_export calib.yml --to=openptv --out-dir=DIR                      cam1.tif.ori, cam1.tif.addpar ..., ptv.par: exact
 
 No camera without a window sees what one behind a window sees, but for one depth. What is written is the central camera (place,
@@ -32,7 +33,8 @@ camera's largest error is above --max-error pixels: give a smaller range, or mea
 --points, what refract_measure wrote: COLMAP's model gets the points, each with the pixels where the central cameras would have
 seen it. These are exact, whatever the table says. --image-extension=.png makes the names of its images those of files.
 
-Calibmar knows flat windows and domes of one layer without a wedge, and gets them as they are; others are refused.
+Calibmar and COLMAP's fork for cameras under water know flat windows and domes of one layer without a wedge, and get them as they are;
+others are refused.
 OpenPTV knows flat panes of one layer, the same for all cameras, and distortion about the middle of the image. Its world begins behind the
 window of camera 1, with that camera's axes, y up and z back; its pixels are 0.01 mm.)";
 
@@ -52,11 +54,11 @@ void addOptions(OptionParser& parser, Options& options)
 {
     parser.add("calib.yml", options.calibration, "what refract_calib wrote, of any number of cameras").required();
     parser.add("--to", options.target, "whom to tell").required()
-        .check(isMember({"opencv", "mrcal", "colmap", "ros", "calibmar", "openptv"}));
-    parser.add("--range", options.range, "NEAR,FAR: z of the scene in the frame of each camera (not for --to=calibmar and openptv)");
+        .check(isMember({"opencv", "mrcal", "colmap", "ros", "calibmar", "colmap-underwater", "openptv"}));
+    parser.add("--range", options.range, "NEAR,FAR: z of the scene in the frame of each camera (not for those that know windows)");
     parser.add("--out", options.out, "file to write, .yml, .xml or .json (--to=opencv)");
     parser.add("--out-dir", options.folder, "folder to write to, made if it is not there (the others)");
-    parser.add("--points", options.points, "points.csv of refract_measure (--to=colmap)");
+    parser.add("--points", options.points, "points.csv of refract_measure (--to=colmap and colmap-underwater)");
     parser.add("--image-extension", options.extension, "what the names of COLMAP's images end in, such as .png (default: nothing, as "
                "points.csv does not say)").needs(parser.get("--points"));
     parser.add("--coefficients", options.coefficients, "of OpenCV's lens model, 4, 5, 8, 12 or 14, or 0 for the fisheye "
@@ -66,7 +68,10 @@ void addOptions(OptionParser& parser, Options& options)
 }
 
 //! Whether the other program knows windows.
-bool isExact(const Options& options) { return options.target == "calibmar" || options.target == "openptv"; }
+bool isExact(const Options& options)
+{
+    return options.target == "calibmar" || options.target == "colmap-underwater" || options.target == "openptv";
+}
 
 void checkCombination(const Options& options, const std::string& settings)
 {
@@ -74,7 +79,7 @@ void checkCombination(const Options& options, const std::string& settings)
     if ((isFile ? options.out : options.folder).empty() || !(isFile ? options.folder : options.out).empty())
         throw Failure("--to=" + options.target + (isFile ? " writes one file: give --out=FILE, and no --out-dir"
                                                          : " writes several files: give --out-dir=DIR, and no --out"));
-    if (!options.points.empty() && options.target != "colmap")
+    if (!options.points.empty() && options.target.compare(0, 6, "colmap") != 0)
         throw Failure("--points: only COLMAP's model has points; give --to=colmap, or leave it out");
     if (options.range.empty() != isExact(options))
         throw Failure("--to=" + options.target + (isExact(options) ? " is exact at all depths: leave --range out"
@@ -147,6 +152,20 @@ CentralRig centralRigOf(const Options& options, const cv::Vec2d& range, const Co
     return rig;
 }
 
+std::vector<MeasuredPoint> pointsOf(const Options& options, size_t cameras)
+{
+    return options.points.empty() ? std::vector<MeasuredPoint>() : readMeasuredPoints(options.points, (int)cameras);
+}
+
+std::vector<ExportFile> exactFiles(const Options& options, const Calibration& calibration)
+{
+    if (options.target == "openptv")
+        return openPtvFiles(calibration);
+    if (options.target == "calibmar")
+        return calibmarFiles(calibration, sourceOf(options));
+    return underwaterColmapFiles(calibration, sourceOf(options), pointsOf(options, calibration.cameras.size()), options.extension);
+}
+
 //! @return what was written
 std::vector<std::string> writeFolder(const Options& options, const std::string& settings, const std::vector<ExportFile>& files)
 {
@@ -171,10 +190,8 @@ std::vector<std::string> write(const Options& options, const std::string& settin
         writeOpenCV(options.out, rig);
         return {options.out};
     }
-    const std::vector<MeasuredPoint> points = options.points.empty() ? std::vector<MeasuredPoint>()
-                                                                     : readMeasuredPoints(options.points, (int)rig.cameras.size());
     return writeFolder(options, settings, options.target == "mrcal" ? mrcalFiles(rig) : options.target == "ros" ? rosFiles(rig)
-                                          : colmapFiles(rig, points, options.extension));
+                                          : colmapFiles(rig, pointsOf(options, rig.cameras.size()), options.extension));
 }
 
 void printTable(const CentralRig& rig)
@@ -204,10 +221,8 @@ int refract_export_main(int argc, char** argv)
         checkCombination(options, command.settings());
         if (isExact(options))
         {
-            const Calibration calibration = readComplete(options, command);
-            printWritten(writeFolder(options, command.settings(), options.target == "openptv"
-                                                                      ? openPtvFiles(calibration)
-                                                                      : calibmarFiles(calibration, sourceOf(options))), command);
+            const std::vector<ExportFile> files = exactFiles(options, readComplete(options, command));
+            printWritten(writeFolder(options, command.settings(), files), command);
             return DONE;
         }
         const cv::Vec2d range = parseFiniteDepthRange(options.range, "--range");

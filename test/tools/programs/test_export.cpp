@@ -278,8 +278,45 @@ TEST_CASE("refract_export says what it cannot do, and leaves nothing behind", "[
     CHECK(folder.count() == 1);
 }
 
-TEST_CASE("refract_export tells Calibmar of lenses and windows exactly, and refuses what it has none like", "[tools][export]")
+TEST_CASE("refract_export tells COLMAP for cameras under water what each camera saw, as it is", "[tools][export]")
 {
+    const TemporaryFolder folder;
+    const Rig rig;
+    for (const Ptr<RefractiveCamera>& camera : rig.cameras)
+    {
+        GlassWindow window = camera->window();
+        window.wedge.clear();
+        camera->setWindow(window);
+    }
+    writeRig(folder / "calib.yml", rig.cameras, rig.Rs, rig.Ts);
+    std::ofstream csv(folder / "points.csv");
+    csv.precision(12);
+    csv << "image,id,u1,v1,u2,v2,x,y,z,sx,sy,sz,status\n";
+    for (size_t i = 0; i < rig.points.size(); i++)
+        csv << "a," << i << "," << rig.pixels[0][i].x << "," << rig.pixels[0][i].y << "," << rig.pixels[1][i].x << ","
+            << rig.pixels[1][i].y << "," << rig.points[i].x << "," << rig.points[i].y << "," << rig.points[i].z << ",1,1,1,0\n";
+    csv.close();
+    const ToolResult result = runTool("refract_export " + (folder / "calib.yml") + " --to=colmap-underwater --points="
+                                      + (folder / "points.csv") + " --out-dir=" + (folder / "m"));
+    CAPTURE(result.err);
+    REQUIRE(result.code == 0);
+    const std::vector<std::string> cameras = linesOf(folder / "m/cameras.txt"), images = linesOf(folder / "m/images.txt");
+    REQUIRE(cameras.size() == 2);
+    CHECK_THAT(cameras[1], Catch::Contains(" FLATPORT ") && !Catch::EndsWith(" "));
+    REQUIRE(images.size() == 2*2);
+    for (int c = 0; c < 2; c++)
+    {
+        const std::vector<double> seen = numbersOf(images[2*c + 1]);
+        REQUIRE(seen.size() == 3*rig.points.size());
+        for (size_t i = 0; i < rig.points.size(); i++)
+            CHECK(norm(Point2d(seen[3*i], seen[3*i + 1]) - Point2d(0.5, 0.5) - rig.pixels[c][i]) < 1e-6);
+    }
+}
+
+TEST_CASE("refract_export tells programs that have windows of lenses and windows exactly, or refuses", "[tools][export]")
+{
+    const std::string target = GENERATE("calibmar", "colmap-underwater"), to = " --to=" + target + " --out-dir=";
+    const std::string file = target == "calibmar" ? "/camera1.yaml" : "/cameras.txt";
     const TemporaryFolder folder;
     const Matx33d K(900, 0, 640, 0, 910, 480, 0, 0, 1);
     GlassWindow flat(Vec3d(0.1, -0.05, 1), 12, 1.52, 30, 1.333), surface(Vec3d(0, 0.1, 1), 0, 1, 40, 1.333);
@@ -294,23 +331,23 @@ TEST_CASE("refract_export tells Calibmar of lenses and windows exactly, and refu
     {
         camera->setImageSize(Size(1280, 960));
         camera->save(folder / "calib.yml");
-        const ToolResult result = runTool("refract_export " + (folder / "calib.yml") + " --to=calibmar --out-dir=" + (folder / "m"));
+        const ToolResult result = runTool("refract_export " + (folder / "calib.yml") + to + (folder / "m"));
         CAPTURE(result.err);
         REQUIRE(result.code == 0);
-        // Read again by the reader whose tests have Calibmar's own formula.
-        const ToolResult again = runTool("refract_export " + (folder / "m/camera1.yaml") + " --to=calibmar --out-dir=" + (folder / "n"));
+        // Read again by the reader whose tests have their own formula.
+        const ToolResult again = runTool("refract_export " + (folder / "m" + file) + to + (folder / "n"));
         REQUIRE(again.code == 0);
-        std::string first = readFile(folder / "m/camera1.yaml"), second = readFile(folder / "n/camera1.yaml");
+        std::string first = readFile(folder / "m" + file), second = readFile(folder / "n" + file);
         CHECK(first.substr(first.find('\n')) == second.substr(second.find('\n')));
-        CHECK_THAT(first, Catch::Contains("640.5, 480.5"));
+        CHECK_THAT(first, Catch::Contains(target == "calibmar" ? "640.5, 480.5" : "640.5 480.5"));
     }
     GlassWindow wedged = flat;
     wedged.wedge = {Vec2d(1e-4, 0)};
     cameras[0]->setWindow(wedged);
     cameras[0]->save(folder / "calib.yml");
-    const ToolResult refused = runTool("refract_export " + (folder / "calib.yml") + " --to=calibmar --out-dir=" + (folder / "m"));
+    const ToolResult refused = runTool("refract_export " + (folder / "calib.yml") + to + (folder / "m"));
     CHECK(refused.code == 1);
     CHECK(mentions(refused.err, "camera1 looks through a window with a wedge"));
-    CHECK(runTool("refract_export " + CALIB + " --to=calibmar --out-dir=" + (folder / "x") + RANGE).code == 1);
+    CHECK(runTool("refract_export " + CALIB + to + (folder / "x") + RANGE).code == 1);
     CHECK(runTool("refract_export " + CALIB + " --to=ros --out-dir=" + (folder / "x")).code == 1);
 }

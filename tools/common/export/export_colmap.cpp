@@ -1,8 +1,8 @@
 // This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
 // SPDX-License-Identifier: Apache-2.0
 
+#include "export/colmap_port.hpp"
 #include "export/export_files.hpp"
-#include "formats/colmap_model.hpp"
 
 #include <opencv2/calib3d.hpp>
 #include <cmath>
@@ -14,11 +14,13 @@ using cv::Point2d;
 
 namespace {
 
-std::string cameraLine(const ExportedCamera& camera, int id)
+std::string cameraLine(const ColmapCamera& own, const ColmapPort& port)
 {
-    const ColmapCamera own = colmapCameraOf(*camera.central.camera, (uint32_t)id);
-    std::string line = cv::format("%d %s %d %d", id, own.model.c_str(), (int)own.width, (int)own.height);
+    std::string line = cv::format("%u %s %d %d", own.id, own.model.c_str(), (int)own.width, (int)own.height);
     for (double parameter : own.parameters)
+        line += cv::format(" %.17g", parameter);
+    line += port.model.empty() ? "" : " " + port.model;
+    for (double parameter : port.parameters)
         line += cv::format(" %.17g", parameter);
     return line + "\n";
 }
@@ -129,22 +131,46 @@ private:
     int count_ = 0;
 };
 
-} // namespace
-
-std::vector<ExportFile> colmapFiles(const CentralRig& rig, const std::vector<MeasuredPoint>& points, const std::string& extension)
+//! @param head first line of each file @param cameras lines of cameras.txt
+std::vector<ExportFile> filesOf(const std::string& head, const std::string& cameras, const CentralRig& rig,
+                                const std::vector<MeasuredPoint>& points, const std::string& extension)
 {
-    const std::string head = "# " + headText(rig) + "\n";
-    std::string cameras = head + "# CAMERA_ID MODEL WIDTH HEIGHT PARAMS[]\n";
-    for (size_t c = 0; c < rig.cameras.size(); c++)
-        cameras += "# " + errorText(rig, rig.cameras[c]) + "\n" + cameraLine(rig.cameras[c], (int)c + 1);
     Model model(rig, extension);
     for (const MeasuredPoint& point : points)
         model.add(point);
     if (points.empty())
         model.addImages();
-    return {{"cameras.txt", cameras},
+    return {{"cameras.txt", head + cameras},
             {"images.txt", head + "# IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME\n# POINTS2D[] as X Y POINT3D_ID\n" + model.images()},
             {"points3D.txt", head + "# POINT3D_ID X Y Z R G B ERROR TRACK[] as IMAGE_ID POINT2D_IDX\n" + model.points()}};
+}
+
+} // namespace
+
+std::vector<ExportFile> colmapFiles(const CentralRig& rig, const std::vector<MeasuredPoint>& points, const std::string& extension)
+{
+    std::string cameras = "# CAMERA_ID MODEL WIDTH HEIGHT PARAMS[]\n";
+    for (size_t c = 0; c < rig.cameras.size(); c++)
+        cameras += "# " + errorText(rig, rig.cameras[c]) + "\n"
+            + cameraLine(colmapCameraOf(*rig.cameras[c].central.camera, (uint32_t)c + 1), {});
+    return filesOf("# " + headText(rig) + "\n", cameras, rig, points, extension);
+}
+
+std::vector<ExportFile> underwaterColmapFiles(const Calibration& calibration, const std::string& source,
+                                              const std::vector<MeasuredPoint>& points, const std::string& extension)
+{
+    const std::string program = "COLMAP for cameras under water";
+    CentralRig rig = {{}, source, {}, calibration.unit};        // each camera is its own
+    std::string cameras = "# CAMERA_ID MODEL WIDTH HEIGHT PARAMS[] OPTIONAL[REFRAC_MODEL REFRAC_PARAMS[]]\n";
+    for (size_t c = 0; c < calibration.cameras.size(); c++)
+    {
+        const cv::Ptr<cv::refract::RefractiveCamera> camera = calibration.cameras[c].camera;
+        const RigidTransform& pose = calibration.extrinsics[c];
+        const std::string name = cv::format("camera%zu", c + 1);
+        rig.cameras.push_back({name, camera, pose, {camera, RigidTransform(), {}}, pose});
+        cameras += cameraLine(exactColmapCamera(*camera, (uint32_t)c + 1, name, program), colmapPortOf(camera->window(), name, program));
+    }
+    return filesOf("# of " + source + (rig.unit.empty() ? "" : ", lengths in " + rig.unit) + "\n", cameras, rig, points, extension);
 }
 
 } // namespace tools

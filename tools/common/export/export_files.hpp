@@ -8,7 +8,7 @@
 #include "export/central_rig.hpp"
 #include "export/measured_points.hpp"
 
-/* Files for programs that have no model of a window, each states its error, and for one that has. */
+/* Files for programs that have no model of a window, each states its error, and for those that have one. */
 namespace tools {
 
 //! A file of a folder, and its text.
@@ -36,6 +36,11 @@ std::vector<ExportFile> colmapFiles(const CentralRig& rig, const std::vector<Mea
 window that it has none like.
 @param source the calibration's file */
 std::vector<ExportFile> calibmarFiles(const Calibration& calibration, const std::string& source);
+
+/** COLMAP's fork for cameras under water: the text model with windows, pixels and points as they are, exactly. Throws Failure as
+calibmarFiles() does. */
+std::vector<ExportFile> underwaterColmapFiles(const Calibration& calibration, const std::string& source,
+                                              const std::vector<MeasuredPoint>& points, const std::string& extension);
 
 /** OpenPTV: camN.tif.ori and camN.tif.addpar of each camera, and ptv.par, exactly. Throws Failure for a lens or a window that it has none
 like, and where the cameras have different ones. */

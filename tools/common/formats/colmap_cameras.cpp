@@ -99,6 +99,7 @@ ColmapCamera colmapCameraOf(const cv::refract::RefractiveCamera& camera, uint32_
     result.width = (uint64_t)camera.imageSize().width;
     result.height = (uint64_t)camera.imageSize().height;
     result.parameters.assign(lens.ptr<double>(), lens.ptr<double>() + lens.total());
+    result.parameters.resize(result.model == "FULL_OPENCV" ? 12 : 8, 0.);
     for (int i : {2, 3})
         result.parameters[i] += COLMAP_CORNER;
     return result;
