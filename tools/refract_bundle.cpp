@@ -88,6 +88,7 @@ void addOptions(OptionParser& parser, Options& o)
     parser.add("--tilted", o.turned.windows, "the same of each window").check(moreThanZero());
     o.bundle.window.addTo(parser, "needed where the medium on its other side is another");
     o.bundle.std.addTo(parser, false);
+    o.bundle.normals.addTo(parser);
     parser.add("--unit", o.bundle.unit, "unit of all lengths (default: that of start.yml, or mm)").check(isMember(unitNames()));
     parser.addFlag("--no-window", o.bundle.noWindow, "start.yml has no glass_window, and there is none");
     parser.addNegation("--no-robust", o.robust, "every match is right; by default wrong ones are left out");

@@ -52,6 +52,7 @@ The same input gives the same bytes: outputs carry the time of the newest image 
 #include "assess/live_limits.hpp"
 #include "calibrate/data_checks.hpp"
 #include "calibrate/few_points.hpp"
+#include "calibrate/given_normals.hpp"
 #include "calibrate/given_window.hpp"
 #include "calibrate/image_fit.hpp"
 #include "calibrate/lens_choice.hpp"
@@ -94,8 +95,7 @@ struct Options
     std::string channel;
     double watchGain = 0.;
     GivenStdOptions std;
-    std::vector<std::string> normals;
-    double normalStd = 0.;
+    GivenNormals normals;
     std::vector<std::string> free;
     bool unpaired = false, sharedWindow = false;
     bool crossValidation = true, robust = true;
@@ -156,10 +156,7 @@ Options parseOptions(Command& command)
         .captureDefault();
     o.window.addTo(parser, "where it is needed and not given, it is estimated");
     o.std.addTo(parser);
-    parser.add("--normal", o.normals, "what is known of the normal of a flat window: X,Y,Z in the camera's frame; once for all cameras, or "
-        "once for each").oneAtATime();
-    parser.add("--normal-std", o.normalStd, "how well, one standard deviation about each of two axes, degrees: the normal is estimated "
-        "within it").needs(parser.get("--normal")).check(moreThanZero());
+    o.normals.addTo(parser);
     parser.add("--channel", o.channel, "of colour images, in which the target is looked for, and for which the calibration is "
         "valid (default: the brightness of all)").check(isMember({"red", "green", "blue"}));
     parser.add("--free", o.free, "what to estimate beside the normal, or the centre").delimiter(',')
@@ -265,32 +262,16 @@ void takeStd(const Options& o, const Target* target, RigOptions& rig)
     given.millimetre = 1./millimetresIn(o.unit);
     given.flags = rig.flags;
     rig.std = o.std.of(given);
-    rig.std.normal = o.normalStd*CV_PI/180.;
+    rig.std.normal = o.normals.std();
     o.window.requireBow(rig.std, rig.flags);
     rig.window = withEstimated(rig.window, rig.std, rig.flags);
 }
 
 void takeNormals(const Options& o, RigOptions& rig)
 {
-    if (o.normals.empty())
-        return;
-    if (isRound(rig.window))
+    if (o.normals.isSaid() && isRound(rig.window))
         throw Failure("--normal is of a flat window; where a " + o.window.shape() + " is, --center says, with --center-std");
-    if (!(o.normalStd > 0.))
-        throw Failure("--normal=" + o.normals[0] + ": say how well it is known, --normal-std=1 for a degree");
-    if (o.normals.size() > 1 && (int)o.normals.size() != o.images.cameraCount())
-        throw Failure(format("--normal is given %zu times, and there are %d cameras: give it once for all, or once for each",
-                             o.normals.size(), o.images.cameraCount()));
-    if (o.normals.size() > 1 && o.sharedWindow)
-        throw Failure(format("--normal is given %zu times, and all cameras look through one window: give that of camera 1",
-                             o.normals.size()));
-    for (const std::string& text : o.normals)
-    {
-        const cv::Vec3d n = parseVector(text, "--normal");
-        if (!(n[2] > 0.))
-            throw Failure("--normal=" + text + ": it points from the camera to the scene, so that its z is more than 0");
-        rig.normals.push_back(cv::normalize(n));
-    }
+    rig.normals = o.normals.of(o.images.cameraCount(), o.sharedWindow);
 }
 
 //! The window as far as it is known, and what is to be found; refuses what no image can tell.

@@ -4,6 +4,7 @@
 // refract_bundle as a user runs it, on wands that are waved through water before cameras in housings.
 #include "wand_scene.hpp"
 #include <nlohmann/json.hpp>
+#include <filesystem>
 #include <map>
 
 using namespace cv;
@@ -223,6 +224,38 @@ TEST_CASE("What an earlier calibration knows has its say in refract_bundle, unle
     CHECK(freed.code == 0);
     const Rig result = Rig::read(f / "calib.yml");
     CHECK(std::abs(result.cameras[1]->window().normal[0] - window.normal[0]) < 5*sigmaOf(result, "2 normal[0]"));
+}
+
+TEST_CASE("What is known of normals has its say in refract_bundle where the start knows no better", "[tools][bundle]")
+{
+    const Wand wand(17, 2, 30);
+    const TemporaryFolder f;
+    wand.write(f);
+    std::string options = "--normal-std=0.01";
+    for (const Ptr<RefractiveCamera>& camera : wand.truth.cameras)
+    {
+        const Vec3d n = camera->window().normal;
+        options += format(" --normal=%.9g,%.9g,%.9g", n[0], n[1], n[2]);
+    }
+    REQUIRE(bundle(f).code == 0);
+    const std::map<std::string, double> loose = Rig::read(f / "calib.yml").deviations();
+    const ToolResult result = bundle(f, options);
+    CAPTURE(scenes::seed(), result.out, result.err);
+    REQUIRE(result.code == 0);
+    const Rig found = Rig::read(f / "calib.yml");
+    const double known = 0.01*CV_PI/180;
+    for (size_t c = 0; c < 2; c++)
+    {
+        const std::string name = std::to_string(c + 1) + " normal[0]";
+        CHECK(found.deviations().at(name) <= 1.001*known);
+        CHECK(loose.at(name) > 2*known);
+        CHECK(norm(found.cameras[c]->window().normal - wand.truth.cameras[c]->window().normal) < 5*known);
+    }
+    CHECK(mentions(bundle(f, options + " --free=normal,extrinsics").err, "leave one out"));
+    CHECK(mentions(bundle(f, "--normal=0,0,1").err, "say how well it is known"));
+    CHECK(mentions(bundle(f, "--normal=0,0,-1 --normal-std=1").err, "its z is more than 0"));
+    std::filesystem::rename(f / "calib.yml", f / "start.yml");
+    CHECK(mentions(bundle(f, options).err, "has a covariance, which says how well its normals are known"));
 }
 
 TEST_CASE("refract_bundle says in one sentence what is wrong with its input", "[tools][bundle]")

@@ -92,6 +92,28 @@ void takeWindows(const BundleOptions& options, const std::string& path, Calibrat
         camera.camera = copyWithWindow(camera.camera, given.window);
 }
 
+//! A start from there; how well they are known is for the covariance.
+void takeNormals(const BundleOptions& options, const std::string& path, Calibration& file)
+{
+    if (!options.normals.isSaid())
+        return;
+    if (!file.covariance.empty())
+        throw Failure("--normal is for a start of nominal values: '" + path + "' has a covariance, which says how well its normals are "
+                      "known; leave it out, or free them (--free=normal)");
+    if (contains(options.free, "normal"))
+        throw Failure("--free=normal says that the matches alone tell the normals, and --normal what is known of them: leave one out");
+    const bool isShared = !file.windows.empty() && std::equal(file.windows.begin() + 1, file.windows.end(), file.windows.begin());
+    const std::vector<cv::Vec3d> normals = options.normals.of((int)file.cameras.size(), isShared);
+    for (size_t c = 0; c < file.cameras.size(); c++)
+    {
+        GlassWindow window = file.cameras[c].camera->window();
+        if (isRound(window))
+            throw Failure("--normal is of flat windows, and '" + path + "' has a camera behind a " + nameOfShape(window));
+        window.normal = normals[std::min(c, normals.size() - 1)];
+        file.cameras[c].camera = copyWithWindow(file.cameras[c].camera, window);
+    }
+}
+
 //! What is free where nothing is said: of a rig of nominal values, what a calibration is for.
 std::vector<std::string> freeOf(const Calibration& file, const RigModel& rig, const BundleOptions& options)
 {
@@ -106,7 +128,7 @@ std::vector<std::string> freeOf(const Calibration& file, const RigModel& rig, co
     if (!options.free.empty() || !file.covariance.empty())
         return options.free;
     std::vector<std::string> free = {"extrinsics"};
-    if (!options.noWindow)
+    if (!options.noWindow && !options.normals.isSaid())
         for (const std::string& place : placesOf(rig))
             free.insert(free.end() - 1, place);
     return free;
@@ -169,7 +191,8 @@ GivenStd stdOf(const GlassWindow& window, const RigModel& rig, const BundleOptio
         given.others.push_back(camera->window().shape);
     given.millimetre = millimetre;
     given.flags = flags;
-    const GivenStd std = options.std.of(given);
+    GivenStd std = options.std.of(given);
+    std.normal = options.normals.std();
     if (options.window.isSaid())
         options.window.requireBow(std, flags);
     return std;
@@ -215,6 +238,7 @@ std::vector<std::string> freeNames()
 BundleStart startOf(Calibration file, const std::string& path, const BundleOptions& options)
 {
     takeWindows(options, path, file);
+    takeNormals(options, path, file);
     BundleStart start;
     start.rig = modelOf(file).clone();
     start.rig.windows = file.windows;

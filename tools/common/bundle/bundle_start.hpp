@@ -5,6 +5,7 @@
 #define REFRACT_TOOLS_BUNDLE_START_HPP
 
 #include "bundle/matches.hpp"
+#include "calibrate/given_normals.hpp"
 #include "calibrate/given_window.hpp"
 
 /* What a bundle adjustment starts from, and what is known beforehand. */
@@ -15,6 +16,7 @@ struct BundleOptions
     std::vector<std::string> free;      //!< --free; empty: not said
     GivenWindowOptions window;          //!< of a start that has none
     GivenStdOptions std;
+    GivenNormals normals;               //!< of flat windows, where the file does not know
     std::string unit;                   //!< of lengths; empty: not said
     bool noWindow = false;
 };
