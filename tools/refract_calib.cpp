@@ -11,7 +11,8 @@ Direct images show the target without the window, glass images through it. Where
 and extension) the target must not have moved between them: such pairs determine the window best. Take four of them, and 12
 or more direct images in all: these serve the lens, unless --camera gives it, in one fit with the window, so that the lens's
 uncertainty is in every +-. With --direct2 and --glass2 (to --direct16 and --glass16, and --camera2 to --camera16) the same name
-means the same moment in all cameras, with or without what all names of one camera begin or end with (left01, right01).
+means the same moment in all cameras, with or without what all names of one camera begin or end with (left01, right01); where that is
+not clear, --view-pattern='*_cam*_{}' says where the moment stands.
 Each camera looks through its own window, unless --shared-window (all through one) or --window-of-camera=1,1,2,2 (cameras 1 and 2
 through one, 3 and 4 through another) says otherwise.
 
@@ -138,6 +139,7 @@ Options parseOptions(Command& command)
     o.target.addTo(parser, false);
     o.images.addTo(parser, "images through the window: glob, corners.vnl or points.csv", "images without the window: the same");
     o.watch.addTo(parser);
+    parser.get("--view-pattern").excludes(parser.get("--watch"));
     parser.add("--watch-gain", o.watchGain, "end when the best next pair would take off less than so many percent of the calibration's "
         "part of a point's error").needs(parser.get("--watch")).check(moreThanZero());
     Option glass2 = parser.get("--glass2");

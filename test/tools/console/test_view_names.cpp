@@ -38,9 +38,23 @@ TEST_CASE("Names stay where some are equal already, or none would be", "[view_na
 {
     for (const std::vector<Names>& names : {std::vector<Names>{{"left01", "left02"}, {"left02", "left03"}},
                                             {{"left01", "left02"}, {"right11", "right12"}}, {{"a", "b"}, {"c", "d"}}, {{"left01",
-                                                                                                                        "left02"}},
-                                            {{"x"}, {"y"}}})
+                                                                                                                        "left02"}}})
         CHECK(takenOff(names) == names);
+}
+
+TEST_CASE("Cameras with one image each have one moment", "[view_names]")
+{
+    CHECK(takenOff({{"cam3"}, {"cam4"}, {"x", "x"}}) == std::vector<Names>{{"cam3"}, {"cam3"}, {"cam3", "cam3"}});
+}
+
+TEST_CASE("A pattern says where the moment stands in a name", "[view_names]")
+{
+    CHECK(momentOf("a/cam1_run2_0005.png", "cam*_{}") == "run2_0005");
+    CHECK(momentOf("a/cam1_run2_0005.png", "*_*_{}") == "0005");
+    CHECK(momentOf("a/0005_left_x.png", "{}_left*") == "0005");
+    CHECK(momentOf("run/0001/left.png", "{}/*") == "0001");
+    CHECK(momentOf("a/left.png", "right{}").empty());
+    CHECK(momentOf("a/left.png", "left{}").empty());
 }
 
 TEST_CASE("Files of equal names are told from each other by their folders", "[view_names]")

@@ -30,6 +30,7 @@ void RigSources::addTo(OptionParser& parser, const std::string& aboutGlass, cons
             if (c > 1)
                 option.hide();          // told in the manual: help of one screen
     }
+    parser.add("--view-pattern", viewPattern, "where names of images have the moment: {}, and * for anything, as in cam*_{}_raw or {}/*");
 }
 
 std::vector<std::string> RigSources::all() const
@@ -156,6 +157,30 @@ void requireOwnImages(const RigImages& sets)
             }
 }
 
+//! By the part of its path that the user says.
+void nameByPattern(RigImages& sets, const std::string& pattern)
+{
+    if (pattern.find("{}") == std::string::npos || pattern.find("{}") != pattern.rfind("{}"))
+        throw Failure("--view-pattern=" + pattern + ": {} must stand in it once, where the moment is, as in cam*_{}_raw");
+    for (int c = 0; c < MAX_CAMERAS; c++)
+        for (DetectedImages* set : {&sets.direct[c], &sets.glass[c]})
+        {
+            std::map<std::string, std::string> known;
+            for (DetectedImage& image : set->images)
+            {
+                if (isPointFile(image.path))
+                    continue;
+                image.stem = momentOf(image.path, pattern);
+                const auto first = known.insert({image.stem, image.path});
+                if (image.stem.empty())
+                    throw Failure("--view-pattern=" + pattern + ": '" + image.path + "' has no name of this form");
+                if (!first.second)
+                    throw Failure("--view-pattern=" + pattern + ": '" + first.first->second + "' and '" + image.path
+                                  + "' of one camera both are of the moment '" + image.stem + "'");
+            }
+        }
+}
+
 //! Images of one moment get one name, where each camera has its own in its names.
 void nameViews(RigImages& sets)
 {
@@ -200,7 +225,7 @@ RigImages readRigImages(const RigSources& sources, const Target* target, const P
     const std::vector<DetectedImages> found = readDetectedImages(given, target, quiet, sources.channel);
     for (size_t i = 0; i < found.size(); i++)
         *places[i] = found[i];
-    nameViews(sets);
+    sources.viewPattern.empty() ? nameViews(sets) : nameByPattern(sets, sources.viewPattern);
     requireOwnImages(sets);
     return sets;
 }

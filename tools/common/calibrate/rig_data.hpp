@@ -32,8 +32,9 @@ struct RigSources
 {
     PerCamera<std::string> direct, glass;
     Channel channel = BRIGHTNESS;               //!< of colour images, in which the target is looked for
+    std::string viewPattern;                    //!< what names say of the moment, see momentOf(); empty: what takeOffCameras() finds
 
-    //! --direct, --glass, --direct2, --glass2, ... --glass16; the first is required.
+    //! --direct, --glass, --direct2, --glass2, ... --glass16, of which the first is required; --view-pattern.
     void addTo(OptionParser& parser, const std::string& aboutGlass, const std::string& aboutDirect);
     std::vector<std::string> all() const;       //!< that are given
     int cameraCount() const;                    //!< the last that has any

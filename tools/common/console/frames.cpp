@@ -181,7 +181,6 @@ cv::Mat Frames::readVideo(int i)
 std::vector<Moment> momentsOf(const std::vector<const Frames*>& cameras)
 {
     const int count = (int)cameras.size();
-    const bool single = std::all_of(cameras.begin(), cameras.end(), [](const Frames* frames) { return frames->size() == 1; });
     std::map<std::string, std::vector<int>> byStem;
     std::vector<std::vector<std::string>> names;
     for (const Frames* frames : cameras)
@@ -196,7 +195,7 @@ std::vector<Moment> momentsOf(const std::vector<const Frames*>& cameras)
             requireEqualLength(*cameras[k], *cameras[c]);
         }
         for (const auto& image : indexOf(names[c], *cameras[c]))
-            byStem.insert({single ? cameras[0]->stem(0) : image.first, std::vector<int>(count, -1)}).first->second[c] = image.second;
+            byStem.insert({image.first, std::vector<int>(count, -1)}).first->second[c] = image.second;
     }
     std::vector<Moment> moments;
     for (const auto& moment : byStem)

@@ -60,7 +60,40 @@ bool shareNames(const std::vector<std::vector<std::string>>& cameras)
     return false;
 }
 
+//! Whether a text has the form of a pattern. @param moment receives what stands at {}
+bool isOfForm(const char* pattern, const std::string& text, std::string& moment)
+{
+    if (!*pattern)
+        return text.empty();
+    if (pattern[0] == '*')
+    {
+        for (size_t length = 0; length <= text.size(); length++)
+            if (isOfForm(pattern + 1, text.substr(length), moment))
+                return true;
+        return false;
+    }
+    if (pattern[0] != '{' || pattern[1] != '}')
+        return !text.empty() && text[0] == pattern[0] && isOfForm(pattern + 1, text.substr(1), moment);
+    for (size_t length = text.size(); length > 0; length--)
+        if (isOfForm(pattern + 2, text.substr(length), moment))
+        {
+            moment = text.substr(0, length);
+            return true;
+        }
+    return false;
+}
+
 } // namespace
+
+std::string momentOf(const std::string& path, const std::string& pattern)
+{
+    const std::filesystem::path file(path);
+    std::string name = stemOf(path), moment;
+    std::filesystem::path folder = file.parent_path();
+    for (auto left = std::count(pattern.begin(), pattern.end(), '/'); left > 0; left--, folder = folder.parent_path())
+        name = folder.filename().generic_string() + "/" + name;
+    return isOfForm(pattern.c_str(), name, moment) ? moment : "";
+}
 
 std::vector<std::string> viewNames(const std::vector<std::string>& paths)
 {
@@ -82,6 +115,15 @@ void takeOffCameras(std::vector<std::vector<std::string>>& names)
 {
     if (names.size() < 2 || shareNames(names))
         return;
+    const auto isOne = [](const std::vector<std::string>& camera) {
+        return std::set<std::string>(camera.begin(), camera.end()).size() == 1; };
+    if (std::all_of(names.begin(), names.end(), isOne))
+    {
+        const std::string first = names[0][0];
+        for (std::vector<std::string>& camera : names)
+            camera.assign(camera.size(), first);
+        return;
+    }
     std::vector<std::vector<std::string>> left = names;
     for (std::vector<std::string>& camera : left)
     {

@@ -15,9 +15,14 @@ std::vector<std::string> viewNames(const std::vector<std::string>& paths);
 
 /** Where no two cameras have a name in common, what is left of each when the camera's own part is taken off: the text that all names of
 the camera begin or end with, but for digits that count moments. left01, right01; 201_02, 202_02; 0001/left, 0001/right. The names
-stay as they are where some are equal already, or none would be.
+stay as they are where some are equal already, or none would be. Of one moment are also the images of cameras that have one each.
 @param names of the images of each camera, which are changed */
 void takeOffCameras(std::vector<std::vector<std::string>>& names);
+
+/** The moment of a file as --view-pattern says it: {} stands for it, * for anything, as in cam*_{}_raw; of the file's name without its
+extension, and of as many folders as the pattern has. The first * take as little, and {} as much as there is. Empty: the name is not of
+this form. */
+std::string momentOf(const std::string& path, const std::string& pattern);
 
 } // namespace tools
 
