@@ -131,7 +131,9 @@ TEST_CASE("rendered targets are found where the truth says, numbered alike howev
                              Kind{"{ pattern: charuco, size: \"6x5\", square: 39., marker: 30. }",
                                   "--pattern=charuco --size=6x5 --square=39 --marker=30", 30, true, 0.1},
                              Kind{"{ pattern: circles, size: \"6x5\", square: 39. }",
-                                  "--pattern=circles --size=6x5 --square=39", 30, false, 0.02}})
+                                  "--pattern=circles --size=6x5 --square=39", 30, false, 0.02},
+                             Kind{"{ pattern: aprilgrid, size: \"4x3\", square: 38. }",
+                                  "--pattern=aprilgrid --size=4x3 --square=38", 48, true, 0.1}})
     {
         const TemporaryFolder folder;
         writeFile(folder / "rig.yml", scene(kind.target, "   glass: { window: 1, poses: [ fixed ] }\n"));
@@ -159,6 +161,24 @@ TEST_CASE("rendered targets are found where the truth says, numbered alike howev
             CHECK(std::sqrt(squares/rows.size()) < kind.limit);
         }
     }
+}
+
+TEST_CASE("An AprilGrid from rendered images to a calibration", "[tools][simulate][aprilgrid]")
+{
+    const TemporaryFolder folder;
+    const std::string sets = "   direct: { window: 0, poses: [ fixed, drawn ] }\n   glass: { window: 1, poses: [ fixed, drawn ] }\n";
+    writeFile(folder / "rig.yml", scene("{ pattern: aprilgrid, size: \"4x3\", square: 38. }", sets));
+    REQUIRE(runTool("refract_simulate " + (folder / "rig.yml") + " --out-dir=" + (folder / "out")).code == 0);
+    const ToolResult calib = runTool("refract_calib --pattern=aprilgrid --size=4x3 --square=38 --direct='" + (folder / "out/direct/*.png")
+                                     + "' --glass='" + (folder / "out/glass/*.png") + "' --camera=" + (folder / "out/truth.yml")
+                                     + " --thickness=20 --index=1.5 --no-cross-validation --out=" + (folder / "calib.yml"));
+    CAPTURE(calib.out, calib.err);
+    REQUIRE(calib.code == 0);
+    const cv::Vec3d found = cv::refract::RefractiveCamera::read(folder / "calib.yml")->window().normal,
+                truth = cv::refract::RefractiveCamera::read(folder / "out/truth.yml")->window().normal;
+    const double degrees = std::acos(std::min(1., found.dot(truth)))*180/CV_PI;
+    std::cout << "[numbers] AprilGrid, five rendered pairs: normal " << degrees << " degrees off\n";
+    CHECK(degrees < 0.5);
 }
 
 TEST_CASE("a chessboard of another size than --size is told from, soon", "[tools][simulate]")
