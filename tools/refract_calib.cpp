@@ -20,6 +20,10 @@ Where an image glob stands, an mrcal corners.vnl or a points.csv may stand inste
 for any target, flat or not, each view its own: view,x,y,z,u,v, one row an observed point, `view` in place of the file's stem;
 what several cameras see is matched by view and x, y, z. If all inputs are such files, --size and --square are not needed.
 
+--target=points.csv: a target of dots on one level or several, as PIV and PTV have them: id,x,y,z of each dot, or OpenPTV's list. Its
+dots are found in images, bright or dark, if 40 % of them are seen; or in tables of points with these names, of any program
+(doc/formats.md), given for each camera as --glass=t.csv --glass2=t.csv: camera 2 is u2,v2 of it.
+
 --poses=poses.csv: the target's poses in camera 1 are known: view,rx_deg,ry_deg,rz_deg,tx,ty,tz,sigma_deg,sigma, one row a view:
 rotation vector, translation, and their standard deviations about and along each axis (none: exact). Lengths in --unit, or in
 that of the name (tx_mm); the rotation may also be rx_rad,... or the matrix r11,r12,...,r33.
@@ -137,6 +141,7 @@ Options parseOptions(Command& command)
     std::vector<std::string> maxErrors, notes;
     OptionParser& parser = command.parser;
     o.target.addTo(parser, false);
+    o.target.addDotsTo(parser);
     o.images.addTo(parser, "images through the window: glob, corners.vnl or points.csv", "images without the window: the same");
     o.watch.addTo(parser);
     parser.get("--view-pattern").excludes(parser.get("--watch"));
@@ -163,6 +168,8 @@ Options parseOptions(Command& command)
         "valid (default: the brightness of all)").check(isMember({"red", "green", "blue"}));
     parser.add("--free", o.free, "what to estimate beside the normal, or the centre").delimiter(',')
         .check(isMember(namesOf(freeFlags())));
+    parser.add("--y-from", o.images.yFrom, "top or bottom: where y counts from in tables of DLTdv or Argus").needs(parser.get("--target"))
+        .check(isMember({"top", "bottom"}));
     parser.add("--image-size", o.imageSize, "WxH; needed for corners.vnl and points.csv, otherwise checked");
     Option unpaired = parser.addFlag("--unpaired", o.unpaired, "equal names are no pairs (a hand-held board)");
     parser.addFlag("--partial", o.target.partial, "a chessboard that may be partly out of view, or is cut at its edge: any piece "
@@ -357,6 +364,8 @@ void takeImages(const Options& o, const Target* target, RigImages sets, RigCalib
 RigCalibration prepare(const Options& o, const Target* target)
 {
     RigCalibration c;
+    if (!o.target.dots.empty())
+        c.inputs.push_back(o.target.dots);
     readWindow(o, c.options);
     if (o.lens != "auto")
         c.options.lensCoefficients = pinholeLenses().at(o.lens).coefficients;
@@ -382,7 +391,7 @@ RigCalibration prepare(const Options& o, const Target* target)
 //! Until the images are there. @param left gets what is still to be read
 RigImages watch(const Options& o, const Target* target, const RigCalibration& prepared, bool quiet, RigSources& left)
 {
-    if (!target)
+    if (!target || target->pattern() == Target::DOTS)
         throw Failure("--watch looks for a board: give --size and --square");
     WatchedRig rig = {o.images, *target, o.unpaired, nullptr};
     const bool isAsked = o.limits.normalStdDeg > 0 || !o.limits.errors.empty() || o.watchGain > 0;
@@ -444,7 +453,7 @@ void checkOutputs(const Options& o, const std::string& settings)
         Plot::checkAvailable();
     std::vector<std::string> inputs = o.images.all();
     inputs.insert(inputs.end(), o.camera.begin(), o.camera.end());
-    inputs.insert(inputs.end(), {o.poses, settings});
+    inputs.insert(inputs.end(), {o.poses, o.target.dots, settings});
     tools::checkOutputs({{"--out", o.out, OUTPUT_CALIBRATION}, {"--summary", o.summary, OUTPUT_TEXT},
                          {"--report", o.report, OUTPUT_TEXT}, {"--pinhole-out", o.pinholeOut, OUTPUT_CALIBRATION}},
                         inputs);

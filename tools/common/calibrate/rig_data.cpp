@@ -219,7 +219,7 @@ RigImages readRigImages(const RigSources& sources, const Target* target, const P
             const std::string& source = (through ? sources.glass : sources.direct)[c];
             if (source.empty())
                 continue;
-            given.push_back({source, imageSize[c], c, through ? "glass images" : "direct images"});
+            given.push_back({source, imageSize[c], c, through ? "glass images" : "direct images", sources.yFrom});
             places.push_back(&(through ? sets.glass : sets.direct)[c]);
         }
     const std::vector<DetectedImages> found = readDetectedImages(given, target, quiet, sources.channel);

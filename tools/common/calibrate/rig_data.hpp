@@ -33,6 +33,7 @@ struct RigSources
     PerCamera<std::string> direct, glass;
     Channel channel = BRIGHTNESS;               //!< of colour images, in which the target is looked for
     std::string viewPattern;                    //!< what names say of the moment, see momentOf(); empty: what takeOffCameras() finds
+    std::string yFrom;                          //!< of tables of points that leave it open, see PixelOrigin
 
     //! --direct, --glass, --direct2, --glass2, ... --glass16, of which the first is required; --view-pattern.
     void addTo(OptionParser& parser, const std::string& aboutGlass, const std::string& aboutDirect);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "target/detected_images.hpp"
+#include "console/csv.hpp"
 #include "console/failure.hpp"
 #include "console/numbers.hpp"
 #include "console/progress.hpp"
@@ -63,14 +64,25 @@ void requireInside(const std::string& path, const std::string& image, const std:
 
 std::string extensionOf(const std::string& path) { return std::filesystem::path(path).extension().string(); }
 
-DetectedImages imagesOfPointFile(const std::string& path, const Target* target, cv::Size imageSize)
+//! Not the target's: x, y, z are in it.
+bool hasCoordinates(const std::string& path)
 {
+    const std::vector<std::string> heading = headingOf(path);
+    return std::find(heading.begin(), heading.end(), "view") != heading.end();
+}
+
+DetectedImages imagesOfPointFile(const ImageSource& source, const Target* target)
+{
+    const std::string& path = source.source;
+    const cv::Size imageSize = source.imageSize;
     if (imageSize.empty())
         throw Failure("'" + path + "' does not say how large the images are: add --image-size=WIDTHxHEIGHT");
     DetectedImages set;
     set.files = {path};
     set.imageSize = imageSize;
-    if (extensionOf(path) == ".csv")
+    if (extensionOf(path) == ".csv" && target && target->pattern() == Target::DOTS && !hasCoordinates(path))
+        set.images = readPointTableOf(*target, path, source.camera, imageSize, source.yFrom);
+    else if (extensionOf(path) == ".csv")
         set.images = readPointsCsv(path);
     else
         for (const auto& image : readCornersVnl(path, target->count()))
@@ -120,9 +132,9 @@ std::vector<DetectedImages> readDetectedImages(const std::vector<ImageSource>& s
     for (size_t s = 0; s < sources.size(); s++)
     {
         sets.push_back(searches[s] ? imagesWith(searches[s]->finish(progress), files[s], sizes[s])
-                                   : imagesOfPointFile(sources[s].source, target, sources[s].imageSize));
+                                   : imagesOfPointFile(sources[s], target));
         if (sets.back().images.empty())
-            throw Failure("'" + sources[s].source + "' has no points of the target: check --pattern and --size");
+            throw Failure("'" + sources[s].source + "' has no points of the target: check --pattern and --size, or --target");
         requireDistinctStems(sets.back(), sources[s].source);
     }
     return sets;
@@ -130,7 +142,7 @@ std::vector<DetectedImages> readDetectedImages(const std::vector<ImageSource>& s
 
 DetectedImages readDetectedImages(const std::string& source, const Target* target, cv::Size imageSize, bool quiet, Channel channel)
 {
-    return readDetectedImages({{source, imageSize, 0, "images"}}, target, quiet, channel)[0];
+    return readDetectedImages({{source, imageSize, 0, "images", ""}}, target, quiet, channel)[0];
 }
 
 } // namespace tools

@@ -16,6 +16,7 @@ struct ImageSource
     cv::Size imageSize = {};        //!< that images must have, and point files mean; empty: not known
     int camera = 0;
     std::string name = "images";    //!< "direct images"
+    std::string yFrom = {};         //!< of tables that leave it open, see PixelOrigin
 };
 
 /** Reads each image once. Throws Failure that names the files if some cannot be read, if they have not the size of their source, if those

@@ -200,6 +200,9 @@ std::string explainMissing(const std::vector<Without>& images, const std::string
     }
     const std::string looked = "any image of " + where
         + (images.size() < all ? cv::format(" (%zu of %zu were looked at)", images.size(), all) : "");
+    if (target.pattern() == Target::DOTS)
+        return "the dots of --target were not found in " + looked + ": at least 40 % of them must be in view, each at least 3 pixels wide; "
+               "are x, y, z of --target right-handed, and is the image not mirrored?";
     if (target.partial())
         return "no piece of the chessboard, of at least 5x5 inner corners, was found in " + looked + ": show more of it, check light and "
                "focus";

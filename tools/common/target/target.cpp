@@ -6,6 +6,7 @@
 #include "target/charuco.hpp"
 #include "target/chessboard.hpp"
 #include "target/circle_grid.hpp"
+#include "target/dot_target.hpp"
 #include "target/partial_chessboard.hpp"
 #include "console/failure.hpp"
 #include "console/numbers.hpp"
@@ -63,10 +64,27 @@ void TargetOptions::addTo(OptionParser& parser, bool required)
                    "squares)");
 }
 
-Target::Target(const TargetOptions& options)
-    : pattern_(CHESSBOARD), size_(parseSize(options.size, "--size")), square_(options.square),
-      marker_(options.marker), tagSpacing_(options.tagSpacing), dictionary_(0), partial_(options.partial), legacy_(options.legacy)
+void TargetOptions::addDotsTo(OptionParser& parser)
 {
+    Option file = parser.add("--target", dots, "a target of dots on any levels, in place of a board: points.csv with id,x,y,z of each, or "
+                             "OpenPTV's list");
+    for (const char* other : {"--size", "--square", "--pattern", "--marker", "--dictionary", "--tag-spacing", "--legacy"})
+        file.excludes(parser.get(other));
+}
+
+Target::Target(const TargetOptions& options)
+    : pattern_(options.dots.empty() ? CHESSBOARD : DOTS), size_(options.dots.empty() ? parseSize(options.size, "--size") : Size()),
+      square_(options.square), marker_(options.marker), tagSpacing_(options.tagSpacing), dictionary_(0), partial_(options.partial),
+      legacy_(options.legacy)
+{
+    if (pattern_ == DOTS)
+    {
+        const ListedDots dots = readListedDots(options.dots);
+        objectPoints_ = dots.points;
+        ids_ = dots.ids;
+        size_ = Size((int)dots.points.size(), 1);
+        return;
+    }
     const auto found = PATTERNS.find(options.pattern);
     if (found == PATTERNS.end())
         throw Failure("--pattern=" + options.pattern + ": give chessboard, circles, acircles, charuco or aprilgrid");
@@ -135,7 +153,7 @@ cv::Mat Target::modules() const
 std::vector<std::pair<int, int>> Target::neighbours() const
 {
     std::vector<std::pair<int, int>> pairs;
-    for (int row = 0; row < size_.height; row++)
+    for (int row = 0; pattern_ != DOTS && row < size_.height; row++)
         for (int column = 0; column < size_.width; column++)
         {
             const int i = row*size_.width + column;
@@ -157,6 +175,8 @@ std::vector<Point2d> Target::detect(const Mat& grey, Size* other, Effort effort)
         return detectCharuco(grey, size_, square_, marker_, dictionary_, legacy_);
     if (pattern_ == APRILGRID)
         return detectAprilGrid(grey, size_/2, tagSpacing_);
+    if (pattern_ == DOTS)
+        return detectListedDots(grey, objectPoints_);
     if (partial_)
         return detectPartialChessboard(grey, size_);
     const std::vector<Point2d> points = pattern_ == CHESSBOARD ? detectChessboard(grey, size_, seenSize, secondsOfChessboard)
@@ -179,7 +199,7 @@ std::vector<std::vector<int>> Target::symmetries() const
     std::vector<std::vector<int>> orders(1);
     for (int i = 0; i < count(); i++)
         orders[0].push_back(i);
-    if (pattern_ == CHARUCO || pattern_ == APRILGRID)
+    if (pattern_ == CHARUCO || pattern_ == APRILGRID || pattern_ == DOTS)
         return orders;
     const bool halfTurn = pattern_ == CIRCLES || (pattern_ == CHESSBOARD && (columns + rows) % 2 == 0)
                           || (pattern_ == ACIRCLES && rows % 2 == 0);

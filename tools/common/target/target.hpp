@@ -24,12 +24,15 @@ struct TargetOptions
     double tagSpacing = 0.;                     //!< AprilGrid: between tags, in sides of a tag; 0 = 0.3
     bool legacy = false;                        //!< ChArUco: of the layout before OpenCV 4.6
     bool partial = false;                       //!< chessboard: any piece of it will do, see detectPartialChessboard()
+    std::string dots;                           //!< --target: the file that says where the dots are; empty: a flat board
 
-    bool given() const { return !size.empty(); }
+    bool given() const { return !size.empty() || !dots.empty(); }
     void addTo(OptionParser& parser, bool required);
+    void addDotsTo(OptionParser& parser);       //!< --target, after addTo()
 };
 
-/* A flat calibration target: its points, row by row, in the plane z = 0, and how to find them in an image.
+/* A calibration target: its points, and how to find them in an image. Those of a flat one are row by row in the plane z = 0; dots whose
+places a file says are anywhere.
 
 The order of the points is the same in every image as far as the target allows. A chessboard with one even and one odd
 side, an asymmetric circle grid with an odd number of rows, ChArUco and AprilGrid have no ambiguity: the first point is told by
@@ -38,7 +41,7 @@ nearest to the image's top left among those the symmetry allows; alignWith() mak
 class Target
 {
 public:
-    enum Pattern { CHESSBOARD, CIRCLES, ACIRCLES, CHARUCO, APRILGRID };
+    enum Pattern { CHESSBOARD, CIRCLES, ACIRCLES, CHARUCO, APRILGRID, DOTS };
 
     explicit Target(const TargetOptions& options);
 
@@ -46,7 +49,8 @@ public:
     cv::Size size() const { return size_; }                 //!< inner corners, dots, or corners of tags
     std::string sizeText() const;                           //!< as --size has it; AprilGrid: tags
     std::string patternName() const;                        //!< as --pattern has it
-    double square() const { return square_; }
+    double square() const { return square_; }               //!< DOTS: 0, as there are none
+    const std::vector<std::string>& ids() const { return ids_; }    //!< DOTS: what the file calls each; else empty
     bool partial() const { return partial_; }               //!< any piece of it will do
     int count() const { return size_.area(); }
     const std::vector<cv::Point3d>& objectPoints() const { return objectPoints_; }
@@ -63,7 +67,7 @@ public:
     //! ChArUco: the board in whole modules, that of a marker's border being one, whatever the true size of markers; else empty.
     cv::Mat modules() const;
 
-    //! Pairs of points next to each other in a row or column; objectPoints() tells how far apart they are.
+    //! Pairs of points next to each other in a row or column, of DOTS none; objectPoints() tells how far apart they are.
     std::vector<std::pair<int, int>> neighbours() const;
 
     //! How long detectors which may take minutes for nothing go on.
@@ -93,6 +97,7 @@ private:
     int dictionary_;
     bool partial_, legacy_;
     std::vector<cv::Point3d> objectPoints_;
+    std::vector<std::string> ids_;
 };
 
 //! True where the point was seen.

@@ -1,0 +1,168 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+// refract_calib with a target of dots on several levels: from images, from tables of pixels, and of a real tank.
+#include "../target/drawn_dots.hpp"
+#include "paths.hpp"
+#include "run_tool.hpp"
+#include <opencv2/calib3d.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <filesystem>
+#include <iomanip>
+
+using namespace cv;
+using namespace cv::refract;
+
+namespace {
+
+const std::vector<Point3d> DOTS = drawn_dots::threeLevels();
+const char* const WINDOW = " --thickness=6 --index=1.5 --outer-index=1.333 --distance=100 --exact --no-cross-validation";
+
+//! Two cameras before the two sides of a tank, and places of the target.
+struct Tank
+{
+    Ptr<RefractiveCamera> cameras[2];
+    Vec3d rvec[2], tvec[2];                 //!< of the target's first place, in each camera
+
+    explicit Tank(const TemporaryFolder& f)
+    {
+        const Vec3d normals[2] = {normalize(Vec3d(0.15, -0.05, 1)), normalize(Vec3d(-0.1, 0.08, 1))};
+        for (int c = 0; c < 2; c++)
+        {
+            const Matx33d K(2600, 0, 640, 0, 2600, 512, 0, 0, 1);
+            RefractiveCamera::create(K, noArray())->save(f / format("k%d.yml", c + 1));
+            cameras[c] = RefractiveCamera::create(K, noArray(), GlassWindow(normals[c], 6, 1.5, 100, 1.333));
+            cameras[c]->setImageSize(Size(1280, 1024));
+            rvec[c] = c ? Vec3d(-0.2, 0.35, 0.1) : Vec3d(0.2, -0.3, 0.05);
+            tvec[c] = Vec3d(5, 2, 330);
+        }
+    }
+    //! The target moved within the tank, by the same as both cameras see it.
+    void moved(int view, int camera, Vec3d& r, Vec3d& t) const
+    {
+        const Vec3d turn(0.1*view, -0.08*view, 0.3*view), shift(2*view, -view, 6*view);
+        composeRT(turn, shift, rvec[camera], tvec[camera], r, t);
+    }
+    std::vector<Point2d> pixels(int view, int camera) const
+    {
+        Vec3d r, t;
+        moved(view, camera, r, t);
+        std::vector<Point2d> seen;
+        refractiveProjectPoints(DOTS, r, t, cameras[camera], seen);
+        return seen;
+    }
+};
+
+void writeDots(const std::string& path)
+{
+    std::ofstream out(path);
+    out << "id,x,y,z\n";
+    for (size_t i = 0; i < DOTS.size(); i++)
+        out << "p" << i << "," << DOTS[i].x << "," << DOTS[i].y << "," << DOTS[i].z << "\n";
+}
+
+double degreesOff(const TemporaryFolder& f, const Tank& tank, int camera)
+{
+    const Vec3d found = RefractiveCamera::read(f / "calib.yml", format("camera%d", camera + 1))->window().normal;
+    return std::asin(std::min(1., norm(found.cross(tank.cameras[camera]->window().normal))))*180/CV_PI;
+}
+
+ToolResult calibrate(const TemporaryFolder& f, const std::string& sources)
+{
+    return runTool("refract_calib --target=" + (f / "dots.csv") + sources + " --camera=" + (f / "k1.yml") + " --camera2=" + (f / "k2.yml")
+                   + WINDOW + " --out=" + (f / "calib.yml"));
+}
+
+} // namespace
+
+TEST_CASE("refract_calib finds the dots of several levels in images, whatever names say before the moment", "[tools][dots]")
+{
+    std::cout << "seed " << scenes::seed() << '\n';
+    const TemporaryFolder f;
+    const Tank tank(f);
+    scenes::Random random(4520);
+    writeDots(f / "dots.csv");
+    for (int c = 0; c < 2; c++)
+        for (int view = 0; view < 3; view++)
+        {
+            Vec3d r, t;
+            tank.moved(view, c, r, t);
+            imwrite(f / format("%s_%d_view%d.png", c ? "b77" : "a12", 17*view + c, view),
+                    drawn_dots::picture(DOTS, 0.6, r, t, tank.cameras[c], random));
+        }
+    const std::string sources = " --glass='" + (f / "a12*.png") + "' --glass2='" + (f / "b77*.png") + "'";
+    const ToolResult r = calibrate(f, sources + " --view-pattern='*_*_{}'");
+    CAPTURE(r.out, r.err);
+    REQUIRE((r.code == 0 || r.code == 2));
+    for (int c = 0; c < 2; c++)
+    {
+        std::cout << "[numbers] dots on three levels, three rendered views, camera " << c + 1 << ": normal " << degreesOff(f, tank, c)
+                  << " degrees off\n";
+        CHECK(degreesOff(f, tank, c) < 0.5);
+    }
+    CHECK(calibrate(f, sources).code == 1);         // no moment in common
+    CHECK(mentions(calibrate(f, sources + " --view-pattern='x{}'").err, "has no name of this form"));
+    CHECK(mentions(calibrate(f, sources + " --view-pattern='{}_*_*'").err, "both are of the moment 'a12'"));
+    CHECK(mentions(calibrate(f, sources + " --view-pattern='*_view'").err, "{} must stand in it once"));
+}
+
+TEST_CASE("refract_calib takes tables of pixels of any program, where --target says what was seen", "[tools][dots]")
+{
+    const TemporaryFolder f;
+    const Tank tank(f);
+    writeDots(f / "dots.csv");
+    std::ofstream own(f / "own.csv"), openLpt(f / "long.csv");
+    own << "image,id,u1,v1,u2,v2\n";
+    openLpt << "frame,cam_id,pt_idx,x,y\n";
+    for (int view = 0; view < 3; view++)
+        for (size_t i = 0; i < DOTS.size(); i++)
+        {
+            own << view << ",p" << i;
+            for (int c = 0; c < 2; c++)
+            {
+                const Point2d p = tank.pixels(view, c)[i];
+                own << std::setprecision(12) << "," << p.x << "," << p.y;
+                openLpt << std::setprecision(12) << view << "," << c << ",p" << i << "," << p.x << "," << p.y << "\n";
+            }
+            own << "\n";
+        }
+    own.close();
+    openLpt.close();
+    for (const char* name : {"own.csv", "long.csv"})
+    {
+        const std::string sources = " --glass=" + (f / name) + " --glass2=" + (f / name) + " --image-size=1280x1024";
+        const ToolResult r = calibrate(f, sources);
+        CAPTURE(name, r.out, r.err);
+        REQUIRE((r.code == 0 || r.code == 2));
+        for (int c = 0; c < 2; c++)
+            CHECK(degreesOff(f, tank, c) < 1e-3);
+    }
+    std::ofstream(f / "bad.csv") << "image,id,u1,v1\n1,p0,3,4\n1,q,5,6\n";
+    const std::string both = " --glass=" + (f / "bad.csv") + " --glass2=" + (f / "bad.csv") + " --image-size=1280x1024";
+    CHECK(mentions(calibrate(f, both).err, "line 3: --target has no point 'q'"));
+}
+
+TEST_CASE("openptv_cavity: two cameras of a real tank in one command, from one image each", "[tools][dots][real]")
+{
+    const std::string tank = paths::data() + "/openptv_cavity/cal/";
+    if (!std::filesystem::exists(tank + "cam3.tif"))
+    {
+        WARN("SKIPPED: there is no '" << tank << "cam3.tif'");
+        return;
+    }
+    const TemporaryFolder f;
+    const ToolResult r = runTool("refract_calib --target=" + tank + "target_on_a_side.txt --glass=" + tank + "cam3.tif --glass2=" + tank
+                                 + "cam4.tif --shared-window --lens=pinhole --free=intrinsics --thickness=6 --index=1.46 "
+                                   "--outer-index=1.33 --distance=433 --exact --no-cross-validation --verbose --out=" + (f / "calib.yml"));
+    CAPTURE(r.out, r.err);
+    REQUIRE((r.code == 0 || r.code == 2));
+    std::istringstream numbers(r.out.substr(r.out.find("RMS through the window, px") + 26));
+    for (int camera : {3, 4})
+    {
+        double rms = 0.;
+        numbers >> rms;
+        std::cout << "[numbers] openptv_cavity, camera " << camera << ", from the image to the calibration: " << rms << " px RMS\n";
+        CHECK(rms > 0.);
+        CHECK(rms < 1.);
+    }
+}

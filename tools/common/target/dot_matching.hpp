@@ -1,0 +1,26 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#ifndef REFRACT_TOOLS_DOT_MATCHING_HPP
+#define REFRACT_TOOLS_DOT_MATCHING_HPP
+
+#include <opencv2/core.hpp>
+#include <vector>
+
+namespace tools {
+
+/** Which dots of an image are those of a target whose dots are anywhere in space, in one plane or several; neither the camera nor where the
+target is need be known. Other dots may be in the image, and dots of the target missing (up to 60 %).
+
+Three neighbours on the target seen as three neighbours in the image say how the target is seen, as far as a camera is a scaled
+orthographic one, up to the sign of the depth (Huttenlocher, Ullman: Recognizing solid objects by alignment with an image, 1990). Where the
+dots around are then in their places, more are added outwards, and a projective camera follows them. The most dots decide, then
+a pinhole camera's residuals, as those tell front from back; of a target that looks the same the other way round the first dot is the one
+nearest to the image's upper left.
+
+@return of each dot of the target the one of the image, -1: not seen; empty: the target is not there */
+std::vector<int> matchDots(const std::vector<cv::Point3d>& target, const std::vector<cv::Point2d>& dots, cv::Size image);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_DOT_MATCHING_HPP
