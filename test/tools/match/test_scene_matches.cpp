@@ -159,9 +159,9 @@ TEST_CASE("Three cameras have chains, and the one that turned is named", "[tools
     const auto named = std::find_if(result.changes.begin(), result.changes.end(), [](const NamedChange& c) {
         return c.name == "R of camera 3 (turned about its own centre) changed by"; });
     REQUIRE(named != result.changes.end());
-    const cv::Vec2d aboutX = named->values[0].aboutAxes[0];
-    CHECK(std::abs(aboutX[0] - 0.05) < 4*aboutX[1]);
-    CHECK(aboutX[1] < 0.005);
+    const ValueAboutAxis& aboutX = named->values[0].aboutAxes[0];
+    CHECK(std::abs(aboutX.value - 0.05) < 4*aboutX.std);
+    CHECK(aboutX.std < 0.005);
 }
 
 // TRIALS=50 refract_tools_tests "[scene-reach]": what checks by scenes reach, pairs of 640x512.

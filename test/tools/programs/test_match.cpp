@@ -122,6 +122,17 @@ TEST_CASE("A scene shows that a camera has turned by 0.05 degrees, and names it"
     CHECK(first["name"] == "R of camera 2 (turned about its own centre) changed by");
     CHECK(std::abs(first["value"][0].get<double>() - 0.0502) < 3*first["std"][0].get<double>());
     CHECK(first["std"][0].get<double>() < 0.01);
+    // The calibration, from which a camera turns back.
+    const double turned[] = { -0.03, -0.02, -0.035 };
+    REQUIRE(first["about_axes"].size() == 3);
+    for (int i = 0; i < 3; i++)
+    {
+        const nlohmann::json about = first["about_axes"][i];
+        CHECK(about["axis"] == std::string(1, "xyz"[i]));
+        CHECK(std::abs(about["value"].get<double>() - turned[i]) < 4*about["std"].get<double>());
+        CHECK(about["std"].get<double>() < 0.01);
+    }
+    CHECK(first["about_axes"][0]["std"].get<double>() < 0.2*first["about_axes"][1]["std"].get<double>());
 }
 
 TEST_CASE("Where a third of an image has moved, that is no change of the rig", "[programs][match][check]")

@@ -369,7 +369,7 @@ std::vector<ChangedValue> valuesOf(const Change& change, const VectorXd& delta, 
         ChangedValue changed{quantity.factor*length, quantity.factor*std::hypot(std::sqrt(std::max(0., variance)),
                                                                                 quantity.count > 1 ? longer : 0.), quantity.unit};
         for (int i = 0; change.isTurn && i < quantity.count; i++)
-            changed.aboutAxes.push_back(quantity.factor*Vec2d(part[i], std::sqrt(std::max(0., C(i, i)))));
+            changed.aboutAxes.push_back({change.axes[i], quantity.factor*part[i], quantity.factor*std::sqrt(std::max(0., C(i, i)))});
         values.push_back(changed);
         at += quantity.count;
     }
@@ -382,8 +382,12 @@ std::string sentenceOf(const Change& change, const std::vector<ChangedValue>& va
     for (size_t i = 0; i < values.size(); i++)
     {
         text += (i ? " and " : " ") + plusMinus(values[i].value, values[i].std) + (values[i].unit.empty() ? "" : " " + values[i].unit);
-        for (size_t k = 0; k < values[i].aboutAxes.size(); k++)
-            text += (k ? ", " : " (") + change.axes[k] + " " + plusMinus(values[i].aboutAxes[k][0], values[i].aboutAxes[k][1]);
+        std::string separator = " (";
+        for (const ValueAboutAxis& about : values[i].aboutAxes)
+        {
+            text += separator + about.axis + " " + plusMinus(about.value, about.std);
+            separator = ", ";
+        }
         text += values[i].aboutAxes.empty() ? "" : ")";
     }
     return text;

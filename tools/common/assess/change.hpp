@@ -41,13 +41,19 @@ struct Change
     VectorXd ranges() const;
 };
 
+struct ValueAboutAxis
+{
+    std::string axis;           //!< "x"
+    double value, std;
+};
+
 //! The estimate of one quantity of a change.
 struct ChangedValue
 {
     double value, std;
     std::string unit;
-    //! Of a turn, value and std about each of its axes: one may be known ten times as well as another, which a length does not say.
-    std::vector<cv::Vec2d> aboutAxes = {};
+    //! Of a turn: one may be known ten times as well as another, which a length does not say.
+    std::vector<ValueAboutAxis> aboutAxes = {};
 };
 std::vector<ChangedValue> valuesOf(const Change& change, const VectorXd& delta, const MatrixXd& covariance);
 

@@ -16,6 +16,7 @@ namespace {
 
 const int ITERATIONS = 10, HALVINGS = 6;
 const double CONVERGED = 1e-3;          // of chi^2, which then is known to far less than 1
+const double NOWHERE = std::numeric_limits<double>::infinity();
 
 //! L of C = L L^T.
 MatrixXd rootOf(const MatrixXd& C)
@@ -38,20 +39,20 @@ MatrixXd leftInverseOf(const MatrixXd& L)
 } // namespace
 
 //! One linearisation: residuals and derivatives, as they are and with the poses projected out.
-struct CheckProblem::Rows
+struct CheckRows
 {
     struct OfView
     {
         VectorXd residual;
-        MatrixXd byQ, byDelta;
+        MatrixXd byParameters;
         UnknownsOfView unknowns;
     };
     std::vector<OfView> views;
     VectorXd residual;
-    MatrixXd byQ, byDelta;
+    MatrixXd byParameters, byQ;     //!< q: of their error
     double squares = 0.;            //!< of all residuals, whatever the poses
 
-    bool isFinite() const { return std::isfinite(squares) && byQ.allFinite() && byDelta.allFinite(); }
+    bool isFinite() const { return std::isfinite(squares) && byParameters.allFinite() && byQ.allFinite(); }
 };
 
 //! H step = gradient, of q and delta.
@@ -103,41 +104,39 @@ MatrixXd CheckProblem::derivative(const Change& change, const VectorXd& q, const
     return D;
 }
 
-CheckProblem::Rows CheckProblem::linearise(const RigModel& rig, const std::vector<ViewObservations>& views, const MatrixXd& byDelta) const
+std::shared_ptr<const CheckRows> CheckProblem::linearise(const RigModel& rig, const std::vector<ViewObservations>& views) const
 {
-    Rows rows;
-    rows.residual.resize(observations_);
-    rows.byQ.resize(observations_, root_.cols());
-    rows.byDelta.resize(observations_, byDelta.cols());
+    const auto rows = std::make_shared<CheckRows>();
+    rows->residual.resize(observations_);
+    rows->byParameters.resize(observations_, parameters_.size());
     int row = 0;
     for (const ViewObservations& observed : views)
     {
         const ViewDerivatives view = differentiateView(rig, observed.objectPoints, observed.rvec, observed.tvec, observed.images);
         const VectorXd residual = observed.weighed(observed.pixels - view.predicted);
-        const MatrixXd byPose = observed.weighed(view.byPose), byParameters = observed.weighed(view.byParameters);
-        rows.squares += residual.squaredNorm();
+        const MatrixXd byPose = observed.weighed(view.byPose);
+        rows->squares += residual.squaredNorm();
         if (!residual.allFinite() || !byPose.allFinite())
         {
-            rows.squares = std::numeric_limits<double>::infinity();
+            rows->squares = NOWHERE;
             return rows;
         }
-        const Rows::OfView of{residual, product(byParameters, root_), product(byParameters, byDelta), UnknownsOfView(observed, byPose)};
+        rows->views.push_back({residual, observed.weighed(view.byParameters), UnknownsOfView(observed, byPose)});
+        const CheckRows::OfView& of = rows->views.back();
         const int count = (int)residual.size() - observed.unknowns();
-        rows.residual.segment(row, count) = of.unknowns.projectedOut(residual);
-        rows.byQ.middleRows(row, count) = of.unknowns.projectedOut(of.byQ);
-        if (rows.byDelta.cols() > 0)        // Eigen's blocks want a column
-            rows.byDelta.middleRows(row, count) = of.unknowns.projectedOut(of.byDelta);
+        rows->residual.segment(row, count) = of.unknowns.projectedOut(residual);
+        rows->byParameters.middleRows(row, count) = of.unknowns.projectedOut(of.byParameters);
         row += count;
-        rows.views.push_back(of);
     }
+    rows->byQ = product(rows->byParameters, root_);
     return rows;
 }
 
-CheckProblem::Normal CheckProblem::normalEquations(const Rows& rows, const VectorXd& q) const
+CheckProblem::Normal CheckProblem::normalEquations(const CheckRows& rows, const MatrixXd& byDelta, const VectorXd& q) const
 {
-    const Eigen::Index n = rows.byQ.cols(), k = rows.byDelta.cols();
+    const Eigen::Index n = rows.byQ.cols(), k = byDelta.cols();
     MatrixXd J(rows.byQ.rows(), n + k);
-    J << rows.byQ, rows.byDelta;
+    J << rows.byQ, product(rows.byParameters, byDelta);
     Normal normal{MatrixXd::Zero(n + k, n + k), transposeTimesVector(J, rows.residual)/(sigma_*sigma_)};
     addGram(J, 1./(sigma_*sigma_), normal.H);
     normal.H.triangularView<Eigen::StrictlyUpper>() = normal.H.transpose();
@@ -151,29 +150,38 @@ CheckFit CheckProblem::iterate(const Change* change, const MatrixXd& directions,
     CheckFit fit = start;
     const Eigen::Index n = root_.cols(), k = directions.cols();
     VectorXd eta = VectorXd::Zero(k);
-    const auto tangent = [&] { return change ? product(derivative(*change, fit.q, timesVector(directions, eta)), directions)
-                                             : MatrixXd(parameters_.size(), 0); };
-    const auto objective = [&](const Rows& rows, const VectorXd& q) { return rows.squares/(sigma_*sigma_) + q.squaredNorm(); };
+    const auto objective = [&](const CheckFit& at) {
+        return at.rows && at.rows->isFinite() ? at.rows->squares/(sigma_*sigma_) + at.q.squaredNorm() : NOWHERE; };
     fit.delta = timesVector(directions, eta);
-    fit.rig = rigOf(fit.q, change, fit.delta);
-    Rows rows = linearise(fit.rig, fit.views, tangent());
+    if (!fit.rows)
+    {
+        fit.rig = rigOf(fit.q, change, fit.delta);
+        fit.rows = linearise(fit.rig, fit.views);
+    }
     for (int i = 0; i < ITERATIONS; i++)
     {
-        fit.chiSquare = std::numeric_limits<double>::infinity();
-        if (!rows.isFinite())
+        fit.chiSquare = objective(fit);
+        if (!std::isfinite(fit.chiSquare))
             return fit;
-        const Normal normal = normalEquations(rows, fit.q);
+        const MatrixXd tangent = change ? product(derivative(*change, fit.q, fit.delta), directions) : MatrixXd(parameters_.size(), 0);
+        const Normal normal = normalEquations(*fit.rows, tangent, fit.q);
         const LDLT H(normal.H);
         const VectorXd step = H.solve(normal.gradient);
         if (!step.allFinite())
             return fit;
-        const double before = objective(rows, fit.q);
-        std::vector<VectorXd> unknowns;
-        for (const Rows::OfView& of : rows.views)
-            unknowns.push_back(of.unknowns.solve(of.residual - timesVector(of.byQ, step.head(n)) - timesVector(of.byDelta, step.tail(k))));
-        // What is left if the linearisation holds; the rest of the decrease is that of poses and points.
-        const double after = rows.residual.squaredNorm()/(sigma_*sigma_) + fit.q.squaredNorm() - normal.gradient.dot(step);
         fit.covariance = propagated(H.inverse().bottomRightCorner(k, k), directions);
+        // What is left if the linearisation holds; the rest of the decrease is that of poses and points.
+        const double before = fit.chiSquare;
+        const double after = fit.rows->residual.squaredNorm()/(sigma_*sigma_) + fit.q.squaredNorm() - normal.gradient.dot(step);
+        if (before - after < CONVERGED + 1e-9*before)
+        {
+            fit.chiSquare = after;
+            return fit;
+        }
+        const VectorXd byParameters = timesVector(root_, step.head(n)) + timesVector(tangent, step.tail(k));
+        std::vector<VectorXd> unknowns;
+        for (const CheckRows::OfView& of : fit.rows->views)
+            unknowns.push_back(of.unknowns.solve(of.residual - timesVector(of.byParameters, byParameters)));
         const CheckFit last = fit;
         const VectorXd lastEta = eta;
         bool isBetter = false;
@@ -189,25 +197,18 @@ CheckFit CheckProblem::iterate(const Change* change, const MatrixXd& directions,
             try
             {
                 fit.rig = rigOf(fit.q, change, fit.delta);
-                rows = linearise(fit.rig, fit.views, tangent());
+                fit.rows = linearise(fit.rig, fit.views);
+                isBetter = objective(fit) <= before;
             }
             catch (const cv::Exception&)        // so far away there is no such window or lens
             {
-                rows.squares = std::numeric_limits<double>::infinity();
+                fit.rows.reset();
             }
-            isBetter = rows.isFinite() && objective(rows, fit.q) <= before;
         }
-        if (!isBetter && !rows.isFinite())      // beyond what can be: no farther than here
-        {
-            fit = last;
-            fit.chiSquare = before;
-            return fit;
-        }
-        fit.chiSquare = after;
-        if (before - after < CONVERGED + 1e-9*before)
-            return fit;
+        if (!isBetter && !std::isfinite(objective(fit)))    // beyond what can be: no farther than here
+            return last;
     }
-    fit.chiSquare = rows.isFinite() ? objective(rows, fit.q) : std::numeric_limits<double>::infinity();
+    fit.chiSquare = objective(fit);
     return fit;
 }
 
@@ -216,8 +217,10 @@ CheckFit CheckProblem::fitUnchanged() const
     CheckFit start;
     start.views = views_;
     start.q = VectorXd::Zero(root_.cols());
-    return iterate(nullptr, MatrixXd(0, 0), start);
+    return fitUnchanged(start);
 }
+
+CheckFit CheckProblem::fitUnchanged(const CheckFit& start) const { return iterate(nullptr, MatrixXd(0, 0), start); }
 
 CheckFit CheckProblem::asCalibrated() const
 {
@@ -225,21 +228,23 @@ CheckFit CheckProblem::asCalibrated() const
     exact.root_ = MatrixXd::Zero(root_.rows(), 1);
     CheckFit fit = exact.fitUnchanged();
     fit.q = VectorXd::Zero(root_.cols());
+    const auto rows = std::make_shared<CheckRows>(*fit.rows);
+    rows->byQ = product(rows->byParameters, root_);
+    fit.rows = rows;
     return fit;
 }
 
 CheckFit CheckProblem::fit(const Change& change, const MatrixXd& directions, const CheckFit& start) const
 {
+    CheckFit fit;
+    fit.chiSquare = NOWHERE;
     try
     {
-        return iterate(&change, directions, start);
+        fit = iterate(&change, directions, start);
     }
-    catch (const cv::Exception&)        // no such window or lens
-    {
-        CheckFit none;
-        none.chiSquare = std::numeric_limits<double>::infinity();
-        return none;
-    }
+    catch (const cv::Exception&) {}     // no such window or lens
+    fit.rows.reset();                   // they are large, and nobody goes on from here
+    return fit;
 }
 
 MatrixXd CheckProblem::directionsOf(const Change& change) const
@@ -260,20 +265,21 @@ CheckProblem::Information CheckProblem::information(const std::vector<Change>& c
         byDelta.middleCols(columns, size) = derivative(change, at.q, VectorXd::Zero(size))*change.ranges().asDiagonal();
         columns += size;
     }
-    const Rows rows = linearise(at.rig, at.views, byDelta);
+    const CheckRows& rows = *at.rows;
     if (!rows.isFinite())
         return {};
+    const MatrixXd effect = product(rows.byParameters, byDelta);
     // r + A dp is what the calibrated values leave; S^-1 by the matrix inversion lemma.
     const double precision = 1./(sigma_*sigma_);
     const VectorXd r = rows.residual + timesVector(rows.byQ, at.q);
     MatrixXd H = transposeTimes(rows.byQ, rows.byQ, precision);
     H.diagonal().array() += 1.;
-    const MatrixXd mixed = transposeTimes(rows.byQ, rows.byDelta, precision);
+    const MatrixXd mixed = transposeTimes(rows.byQ, effect, precision);
     const LDLT ldlt(H);
     Information result;
-    result.G = transposeTimes(rows.byDelta, rows.byDelta, precision) - transposeTimes(mixed, ldlt.solve(mixed));
-    result.score = precision*(transposeTimesVector(rows.byDelta, r)
-                              - timesVector(transposeTimes(rows.byDelta, rows.byQ),
+    result.G = transposeTimes(effect, effect, precision) - transposeTimes(mixed, ldlt.solve(mixed));
+    result.score = precision*(transposeTimesVector(effect, r)
+                              - timesVector(transposeTimes(effect, rows.byQ),
                                             ldlt.solve(transposeTimesVector(rows.byQ, r, precision))));
     result.byParameters = transposeTimes(ldlt.solve(mixed), leftInverseOf(root_));     // B^T S^-1 A L = (H^-1 mixed)^T
     return result;

@@ -7,6 +7,7 @@
 #include "assess/change.hpp"
 #include "assess/check_input.hpp"
 #include "measure/view_observations.hpp"
+#include <memory>
 
 /* New images of a target, or of a scene, against a calibration:
 
@@ -20,6 +21,8 @@ boards' poses are free, and so are all points of a scene. With these projected o
 are the generalised ones with the covariance S = sigma^2 I + A L L^T A^T. */
 namespace tools {
 
+struct CheckRows;           // a linearisation
+
 //! One change freed, or none.
 struct CheckFit
 {
@@ -28,6 +31,7 @@ struct CheckFit
     VectorXd q, delta;
     MatrixXd covariance;                        //!< of delta
     double chiSquare = 0.;                      //!< infinity: no fit
+    std::shared_ptr<const CheckRows> rows = {}; //!< there, where nothing is changed; null: not yet known
 };
 
 class CheckProblem
@@ -39,8 +43,9 @@ public:
     //! Of a target; throws Failure if its pose cannot be found.
     CheckProblem(const CheckInput& input, const std::vector<View>& views, double sigma);
 
-    //! The calibration as it is. @param iterations enough for it
+    //! The calibration as it is. @param start its fit with another sigma
     CheckFit fitUnchanged() const;
+    CheckFit fitUnchanged(const CheckFit& start) const;
 
     //! One change freed, from another fit. @param directions of its parameters that the images tell, a column each
     CheckFit fit(const Change& change, const MatrixXd& directions, const CheckFit& start) const;
@@ -65,10 +70,9 @@ public:
     int observations() const { return observations_; }  //!< without those that poses and points take
 
 private:
-    struct Rows;
     struct Normal;
-    Rows linearise(const RigModel& rig, const std::vector<ViewObservations>& views, const MatrixXd& byDelta) const;
-    Normal normalEquations(const Rows& rows, const VectorXd& q) const;
+    std::shared_ptr<const CheckRows> linearise(const RigModel& rig, const std::vector<ViewObservations>& views) const;
+    Normal normalEquations(const CheckRows& rows, const MatrixXd& byDelta, const VectorXd& q) const;
     RigModel rigOf(const VectorXd& q, const Change* change, const VectorXd& delta) const;
     MatrixXd derivative(const Change& change, const VectorXd& q, const VectorXd& delta) const;
     CheckFit iterate(const Change* change, const MatrixXd& directions, const CheckFit& start) const;

@@ -80,7 +80,7 @@ private:
     void fitUnchanged(std::unique_ptr<CheckProblem> problem)
     {
         problem_ = std::move(problem);
-        unchanged_ = problem_->fitUnchanged();
+        unchanged_ = unchanged_.rows ? problem_->fitUnchanged(unchanged_) : problem_->fitUnchanged();
         changes_ = changesOf(input_.rig, unit_, middleOfPoints());
         if (std::isfinite(unchanged_.chiSquare))
             information_ = problem_->information(changes_, unchanged_);
@@ -181,7 +181,8 @@ private:
         std::vector<double> ranges;
         ChartedScore& charted = result_.charted;
         // About the calibrated values: what a large change makes of the others is far from linear.
-        const CheckProblem::Information information = problem_->information(changes_, problem_->asCalibrated());
+        asCalibrated_ = problem_->asCalibrated();
+        const CheckProblem::Information information = problem_->information(changes_, asCalibrated_);
         if (information.G.size() == 0)
             return;
         for (const Tested& tested : tested_)
@@ -242,7 +243,7 @@ private:
         const double FAR = 5.;          // standard deviations
         if (unchanged_.q.squaredNorm() < FAR*FAR*unchanged_.q.size())
             return;
-        const CheckFit other = problem_->fit(*tested.change, directions, problem_->asCalibrated());
+        const CheckFit other = problem_->fit(*tested.change, directions, asCalibrated_);
         if (other.chiSquare < tested.fit.chiSquare)
             tested.fit = other;
     }
@@ -445,7 +446,7 @@ private:
     const bool isScene_ = false;
     CheckResult result_;
     std::unique_ptr<CheckProblem> problem_;
-    CheckFit unchanged_;
+    CheckFit unchanged_, asCalibrated_;
     std::vector<Change> changes_;
     CheckProblem::Information information_;
     std::vector<Tested> tested_;

@@ -17,15 +17,17 @@ const size_t SCREEN = 80;               // columns
 
 Json jsonOf(const NamedChange& change)
 {
-    Json value = Json::array(), std = Json::array(), unit = Json::array();
+    Json value = Json::array(), std = Json::array(), unit = Json::array(), axes = Json::array();
     for (const ChangedValue& changed : change.values)
     {
         value.append(changed.value);
         std.append(changed.std);
         unit.append(changed.unit);
+        for (const ValueAboutAxis& about : changed.aboutAxes)
+            axes.append({{"axis", about.axis}, {"value", about.value}, {"std", about.std}});
     }
     return {{"name", change.name}, {"camera", change.camera >= 0 ? Json(change.camera + 1) : Json()}, {"value", value}, {"std", std},
-            {"unit", unit}, {"p", change.probability}, {"text", change.sentence}};
+            {"unit", unit}, {"about_axes", axes}, {"p", change.probability}, {"text", change.sentence}};
 }
 
 //! What is not to be told is nan, which is null in the file.

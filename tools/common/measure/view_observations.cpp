@@ -5,6 +5,8 @@
 #include "console/failure.hpp"
 #include "math/dense.hpp"
 #include <opencv2/calib3d.hpp>
+#include <algorithm>
+#include <cmath>
 
 using namespace cv;
 using namespace cv::refract;
@@ -89,15 +91,6 @@ void ViewObservations::move(const VectorXd& step)
         objectPoints[i] += Point3d(step[3*i], step[3*i + 1], step[3*i + 2]);
 }
 
-//! These rows, in this order.
-static MatrixXd rowsOf(const MatrixXd& all, const std::vector<int>& rows)
-{
-    MatrixXd part(rows.size(), all.cols());
-    for (size_t i = 0; i < rows.size(); i++)
-        part.row(i) = all.row(rows[i]);
-    return part;
-}
-
 UnknownsOfView::UnknownsOfView(const ViewObservations& observed, const MatrixXd& byPose)
 {
     std::vector<std::vector<int>> rows(observed.isScene ? observed.objectPoints.size() : 1);
@@ -110,29 +103,59 @@ UnknownsOfView::UnknownsOfView(const ViewObservations& observed, const MatrixXd&
             group.push_back(row++);
         }
     for (const std::vector<int>& group : rows)
-        add(group, observed.isScene ? MatrixXd(rowsOf(byPose, group).rightCols(3)) : rowsOf(byPose, group));
+    {
+        groups_.emplace_back(group, byPose.rightCols(observed.isScene ? 3 : 6));
+        left_ += groups_.back().left();
+    }
 }
 
-void UnknownsOfView::add(const std::vector<int>& rows, const MatrixXd& byUnknowns)
+UnknownsOfView::Group::Group(const std::vector<int>& rows, const Eigen::Ref<const MatrixXd>& byUnknowns)
+    : rows_(rows), normals_(MatrixXd::Zero(rows.size(), byUnknowns.cols())), R_(MatrixXd::Zero(byUnknowns.cols(), byUnknowns.cols()))
 {
-    groups_.push_back({rows, PoseNullSpace(byUnknowns), PivotedQR(byUnknowns)});
+    VectorXd x;
+    for (Eigen::Index j = 0; j < R_.cols(); j++)
+    {
+        reflect(byUnknowns.col(j).data(), x);       // by those before
+        R_.col(j).head(j) = x.head(j);
+        auto rest = x.tail(x.size() - j);
+        const double length = rest.norm();
+        if (!(length > 0.))
+            continue;
+        R_(j, j) = x[j] > 0. ? -length : length;
+        x[j] -= R_(j, j);
+        normals_.col(j).tail(rest.size()) = rest/rest.norm();
+    }
+}
+
+void UnknownsOfView::Group::reflect(const double* column, VectorXd& x) const
+{
+    const Eigen::Index m = normals_.rows();
+    x.resize(m);
+    for (Eigen::Index i = 0; i < m; i++)
+        x[i] = column[rows_[i]];
+    for (Eigen::Index j = 0; j < normals_.cols(); j++)
+    {
+        const double* normal = normals_.col(j).data();
+        double along = 0.;
+        for (Eigen::Index i = j; i < m; i++)
+            along += normal[i]*x[i];
+        for (Eigen::Index i = j; i < m; i++)
+            x[i] -= 2.*along*normal[i];
+    }
 }
 
 MatrixXd UnknownsOfView::projectedOut(const MatrixXd& rows) const
 {
-    std::vector<MatrixXd> parts;
-    Eigen::Index count = 0;
-    for (const Group& group : groups_)
+    MatrixXd all(left_, rows.cols());
+    VectorXd x;
+    for (Eigen::Index column = 0; column < rows.cols(); column++)
     {
-        parts.push_back(group.project(rowsOf(rows, group.rows)));
-        count += parts.back().rows();
-    }
-    MatrixXd all(count, rows.cols());
-    count = 0;
-    for (const MatrixXd& part : parts)
-    {
-        all.middleRows(count, part.rows()) = part;
-        count += part.rows();
+        double* at = all.col(column).data();
+        for (const Group& group : groups_)
+        {
+            group.reflect(rows.col(column).data(), x);
+            at = std::copy(x.data() + x.size() - group.left(), x.data() + x.size(), at);
+        }
     }
     return all;
 }
@@ -140,12 +163,24 @@ MatrixXd UnknownsOfView::projectedOut(const MatrixXd& rows) const
 VectorXd UnknownsOfView::solve(const VectorXd& residual) const
 {
     std::vector<double> step;
+    VectorXd x;
     for (const Group& group : groups_)
     {
-        const VectorXd part = group.by.solve(VectorXd(rowsOf(residual, group.rows)));
+        group.reflect(residual.data(), x);
+        const VectorXd part = group.solveR(x);
         step.insert(step.end(), part.data(), part.data() + part.size());
     }
     return Eigen::Map<VectorXd>(step.data(), step.size());
+}
+
+VectorXd UnknownsOfView::Group::solveR(const VectorXd& x) const
+{
+    const double NOTHING = 1e-14*R_.diagonal().cwiseAbs().maxCoeff();       // what moves no pixel is not moved
+    VectorXd step = VectorXd::Zero(R_.cols());
+    for (Eigen::Index j = R_.cols() - 1; j >= 0; j--)
+        if (std::abs(R_(j, j)) > NOTHING)
+            step[j] = (x[j] - R_.row(j).dot(step))/R_(j, j);
+    return step;
 }
 
 } // namespace tools

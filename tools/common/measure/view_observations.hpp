@@ -39,16 +39,24 @@ public:
     Eigen::VectorXd solve(const Eigen::VectorXd& residual) const;
 
 private:
-    //! Coordinates that share unknowns: all of a board, those of one point of a scene.
-    struct Group
+    /** Coordinates that share unknowns: all of a board, those of one point of a scene. Q R = derivatives by these, by Householder: a scene
+    has thousands of groups of four rows. */
+    class Group
     {
-        std::vector<int> rows;
-        PoseNullSpace project;
-        cv::refract::PivotedQR by;
+    public:
+        Group(const std::vector<int>& rows, const Eigen::Ref<const Eigen::MatrixXd>& byUnknowns);
+        //! x = Q^T of its rows of a column of all.
+        void reflect(const double* column, Eigen::VectorXd& x) const;
+        Eigen::VectorXd solveR(const Eigen::VectorXd& x) const;
+        Eigen::Index left() const { return normals_.rows() - normals_.cols(); }
+
+    private:
+        std::vector<int> rows_;
+        Eigen::MatrixXd normals_, R_;       //!< of the mirrors, of length 1 or 0
     };
-    void add(const std::vector<int>& rows, const Eigen::MatrixXd& byUnknowns);
 
     std::vector<Group> groups_;
+    Eigen::Index left_ = 0;                 //!< rows, of all
 };
 
 //! The seen points of one image, after those that are there; an image without any is none.
