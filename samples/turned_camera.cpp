@@ -22,7 +22,6 @@ using namespace cv;
 const double SEARCH = 6;            // px from the epipolar curve: what a camera may have turned
 const double MAY_TURN = 0.3;        // degrees, one standard deviation
 const Point2d OFFSET(0.25, 0.25);   // px, by which SIFT is off that doubles the image with cv::resize: all but with enable_precise_upscale
-const double TOGETHER = 0.03;       // px: by which all features of an image may be off together; no number of matches averages it
 
 struct Matches
 {
@@ -50,6 +49,37 @@ static Matches alike(const Mat& left, const Mat& right)
     return matches;
 }
 
+//! R and T of a camera that turns about its own centre.
+static void turn(const Vec3d& rvec, Mat& R, Mat& T)
+{
+    Matx33d turned;
+    Rodrigues(rvec, turned);
+    R = Mat(turned)*R;
+    T = Mat(turned)*T;
+}
+
+//! Of R, as a rotation vector, and T: one standard deviation of a turn about each axis. T turns with R.
+static Mat covarianceOfTurn(const Mat& R, const Mat& T, double std)
+{
+    const double STEP = 1e-3;       // Rodrigues takes turns below 1e-5 for none
+    Mat byTurn(6, 3, CV_64F);
+    for (int i = 0; i < 3; i++)
+    {
+        Mat ends[2];
+        for (int side = 0; side < 2; side++)
+        {
+            Vec3d rvec;
+            rvec[i] = side ? STEP : -STEP;
+            Mat turnedR = R, turnedT = T, rotation;
+            turn(rvec, turnedR, turnedT);
+            Rodrigues(turnedR, rotation);
+            vconcat(rotation, turnedT, ends[side]);
+        }
+        byTurn.col(i) = (ends[1] - ends[0])*(std/(2*STEP));
+    }
+    return byTurn*byTurn.t();
+}
+
 int main(int argc, char** argv)
 {
     const CommandLineParser args(argc, argv,
@@ -68,10 +98,7 @@ int main(int argc, char** argv)
         return 1;
     }
     const double bump = args.get<double>("bump");
-    Matx33d bumped;
-    Rodrigues(Vec3d(bump*CV_PI/180, 0, 0), bumped);
-    Rs[1] = Mat(bumped)*Rs[1];
-    Ts[1] = Mat(bumped)*Ts[1];
+    turn(Vec3d(bump*CV_PI/180, 0, 0), Rs[1], Ts[1]);
     const Mat before = Rs[1].clone();
 
     // Only what is near the refracted epipolar curve, within the depths of the scene, can be right.
@@ -87,11 +114,10 @@ int main(int argc, char** argv)
             near.right.push_back(all.right[i]);
         }
 
-    // All points, and R of camera 2 within what it may have turned; the rest stays. Wrong matches are left out.
-    const int turn = (int)(cameras[0]->parameterNames().size() + cameras[1]->parameterNames().size());
-    Mat known = Mat::zeros(turn + 6, turn + 6, CV_64F);
-    for (int i = 0; i < 3; i++)
-        known.at<double>(turn + i, turn + i) = std::pow(MAY_TURN*CV_PI/180, 2);
+    // All points, and R and T of camera 2 within what it may have turned; the rest stays. Wrong matches are left out.
+    const int place = (int)(cameras[0]->parameterNames().size() + cameras[1]->parameterNames().size());
+    Mat known = Mat::zeros(place + 6, place + 6, CV_64F);
+    covarianceOfTurn(Rs[1], Ts[1], MAY_TURN*CV_PI/180).copyTo(known(Rect(place, place, 6, 6)));
     const std::vector<std::vector<Mat> > pixels = { { Mat(near.left) }, { Mat(near.right) } };
     std::vector<Point3d> points;
     std::vector<Mat> inliers;
@@ -109,8 +135,7 @@ int main(int argc, char** argv)
     const double truth[] = { -bump, 0, 0 };
     for (int i = 0; i < 3; i++)
     {
-        const double together = TOGETHER/cameras[1]->lensParameters().at<double>(0), found = turned[i]*180/CV_PI;
-        const double std = std::sqrt(covariance.at<double>(turn + i, turn + i) + together*together)*180/CV_PI;
+        const double found = turned[i]*180/CV_PI, std = std::sqrt(covariance.at<double>(place + i, place + i))*180/CV_PI;
         isGood &= std::abs(found - truth[i]) < 4*std;
         std::cout << format("camera 2 turned about %c by %7.4f +- %.4f degrees (true: %.4f)\n", "xyz"[i], found, std, truth[i]);
     }
