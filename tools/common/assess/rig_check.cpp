@@ -238,12 +238,14 @@ private:
         if (std::isfinite(tested.fit.chiSquare))
             return;
         const MatrixXd directions = tested.change->ranges().asDiagonal()*tested.at.directions;
-        tested.fit = problem_->fit(*tested.change, directions, unchanged_);
-        // Where all else was bent far to explain a large change, the way back may be barred.
+        // Where all else was bent far to explain a large change, the way back is long, and may be barred.
         const double FAR = 5.;          // standard deviations
-        if (unchanged_.q.squaredNorm() < FAR*FAR*unchanged_.q.size())
+        const bool isFar = unchanged_.q.squaredNorm() > FAR*FAR*unchanged_.q.size();
+        tested.fit = problem_->fit(*tested.change, directions, isFar ? asCalibrated_ : unchanged_);
+        // With more free the best is not worse: else this is another minimum. Of boards, of which images may be exchanged, there are many.
+        if (!isFar || (isScene_ && tested.fit.chiSquare <= unchanged_.chiSquare))
             return;
-        const CheckFit other = problem_->fit(*tested.change, directions, asCalibrated_);
+        const CheckFit other = problem_->fit(*tested.change, directions, unchanged_);
         if (other.chiSquare < tested.fit.chiSquare)
             tested.fit = other;
     }
