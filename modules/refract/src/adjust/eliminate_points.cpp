@@ -322,7 +322,8 @@ VectorXd dampedStep(const Information& information, double damping, double& gain
     const VectorXd gradient = equations.gradient, added = damping*equations.diagonal();
     equations.addToDiagonal(added);
     const VectorXd step = RootOfEquations(std::move(equations), information.effect, ROUNDING).step(information.effect, ROUNDING);
-    gain = step.cwiseProduct(added).dot(step) - gradient.dot(step);
+    const double ofPoints = information.ofInner - information.poses.residual.squaredNorm();
+    gain = ofPoints + step.cwiseProduct(added).dot(step) - gradient.dot(step);
     return step;
 }
 

@@ -133,7 +133,7 @@ double sumOfSquares(const std::vector<ClusterSearch>& searches)
 
 } // namespace
 
-std::vector<double> optimizeClusters(Problem& problem, bool onlyTied)
+std::vector<double> optimizeClusters(Problem& problem, bool onlyTied, double rest)
 {
     const int ROUNDS = 50;
     std::vector<Cluster>& clusters = problem.scene().clusters();
@@ -182,7 +182,7 @@ std::vector<double> optimizeClusters(Problem& problem, bool onlyTied)
                 double gain;
                 const VectorXd step = stepOf(search.best, search.control.damping(), gain);
                 search.isDone = round + 1 == ROUNDS || search.control.isHopeless() ||
-                                StepControl::isNegligible(gain, std::max(mean, search.best.value), 6);
+                                StepControl::isNegligible(gain, std::max(mean, search.best.value), 6, rest);
                 clusters[i].values = search.isDone ? search.values : VectorXd(search.values + step);
                 isWanted[i] = !search.isDone;
             }
@@ -211,9 +211,9 @@ std::vector<MatrixXd> informationOfTied(const Problem& problem)
     return matrices;
 }
 
-bool optimizePoints(Problem& problem, double& squaredError)
+bool optimizePoints(Problem& problem, double& squaredError, double rest)
 {
-    const std::vector<double> squares = optimizeClusters(problem, false);
+    const std::vector<double> squares = optimizeClusters(problem, false, rest);
     squaredError = std::accumulate(squares.begin(), squares.end(), 0.);
     for (int block = 0; block < problem.outerCount(); block++)
         squaredError += problem.priorResidual(block).squaredNorm();

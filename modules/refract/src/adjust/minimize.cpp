@@ -111,6 +111,7 @@ private:
     std::vector<double> retreat_;           //!< per block: the part of its distance by which a window was moved from a target; 0: not
 };
 
+const double NEARLY = 1e-3;     // of a point's squares: a small part of what noise does to it
 const double FIRST_RETREAT = 1e-4, LAST_RETREAT = 1e-2;     // parts of the distance
 
 //! The coordinate of a free distance; -1: the block has none.
@@ -184,6 +185,8 @@ bool Minimization::solve(TrustRegion& region)
     for (Eigen::VectorXd& block : values)
         state.push_back(block.data());
     cost_->setState(state);
+    const bool areStepsOwn = problem_.hasScene() && region.strategy == ceres::LEVENBERG_MARQUARDT;
+    cost_->setRest(areStepsOwn ? NEARLY : TO_ROUNDING);
     if (!cost_->linearize())
         return false;
     if (state.empty())              // only inner blocks are free
@@ -193,7 +196,7 @@ bool Minimization::solve(TrustRegion& region)
         region.isIdle = true;
         return true;
     }
-    if (problem_.hasScene() && region.strategy == ceres::LEVENBERG_MARQUARDT)
+    if (areStepsOwn)
         descend(region);
     else
         solve(region, state);

@@ -12,7 +12,8 @@ namespace cv { namespace refract {
 using Eigen::VectorXd;
 
 ReducedCost::ReducedCost(Problem& problem)
-    : problem_(problem), cameras_(0), isPossible_(false), isCurrent_(false), isAnchor_(false), isLinear_(false), squaredError_(0)
+    : problem_(problem), cameras_(0), isPossible_(false), isCurrent_(false), isAnchor_(false), isLinear_(false), squaredError_(0),
+      rest_(TO_ROUNDING)
 {
     const FreeSpace space(problem, false);
     for (int block = 0; block < problem.outerCount(); block++)
@@ -20,6 +21,12 @@ ReducedCost::ReducedCost(Problem& problem)
             variable_.push_back(block);
     for (int block : variable_)
         cameras_ += problem.blocks()[block].kind != ParameterBlock::POSE;
+}
+
+void ReducedCost::setRest(double rest)
+{
+    isCurrent_ = isCurrent_ && rest_ <= rest;
+    rest_ = rest;
 }
 
 //! The problem to the state; false if it is there already.
@@ -80,17 +87,21 @@ void ReducedCost::predictInner()
         change.segment(anchor_->space.first[block], own) =
             transposeTimesVector(anchor_->space.bases[block], problem_.blocks()[block].values - anchor_->values[i]);
     }
+    const std::vector<InnerBlock>& blocks = anchor_->information.inner;
+    std::vector<int> first(1, 0);
+    for (const InnerBlock& block : blocks)
+        first.push_back(first.back() + (int)block.step.size());
     VectorXd inner = anchor_->inner;
-    int at = 0;
-    for (const InnerBlock& block : anchor_->information.inner)
+    parallel_for_(Range(0, (int)blocks.size()), [&](const Range& range)
     {
-        const int size = (int)block.byOuter.rows();
-        VectorXd own(block.columns.size());
-        for (size_t k = 0; k < block.columns.size(); k++)
-            own[k] = change[block.columns[k]];
-        inner.segment(at, size) += timesVector(block.byOuter, own);
-        at += size;
-    }
+        for (int i = range.start; i < range.end; i++)
+        {
+            auto own = inner.segment(first[i], blocks[i].step.size());
+            own += blocks[i].step;
+            for (size_t k = 0; k < blocks[i].columns.size(); k++)
+                own += change[blocks[i].columns[k]]*blocks[i].byOuter.col(k);
+        }
+    });
     setInnerValues(problem_, inner);
 }
 
@@ -101,11 +112,11 @@ bool ReducedCost::optimize()
     isAnchor_ = false;
     if (anchor_)
         predictInner();
-    isCurrent_ = optimizeInner(problem_, squaredError_);
+    isCurrent_ = optimizeInner(problem_, squaredError_, rest_);
     if (!isCurrent_ && anchor_)
     {
         setInnerValues(problem_, anchor_->inner);       // the prediction may have gone too far
-        isCurrent_ = optimizeInner(problem_, squaredError_);
+        isCurrent_ = optimizeInner(problem_, squaredError_, rest_);
     }
     return isCurrent_;
 }
