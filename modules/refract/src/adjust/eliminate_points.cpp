@@ -109,7 +109,7 @@ void addPriors(const Problem& problem, const FreeSpace& space, NormalEquations& 
 struct EliminatedCluster
 {
     InnerBlock points;
-    MatrixXd W;                 //!< (Y E^T F)^T
+    RowMajorMatrix W;           //!< (Y E^T F)^T
     VectorXd residual;          //!< Y E^T r
 };
 
@@ -182,7 +182,8 @@ EliminatedCluster eliminate(const Problem& problem, int index, const std::vector
     for (size_t k = 0; k < columns.size(); k++)
         place[columns[k]] = (int)k;
     const int size = cluster.size();
-    MatrixXd EE = MatrixXd::Zero(size, size), FE = MatrixXd::Zero(columns.size(), size);
+    MatrixXd EE = MatrixXd::Zero(size, size);
+    RowMajorMatrix FE = RowMajorMatrix::Zero(columns.size(), size);
     VectorXd Er = VectorXd::Zero(size);
     for (const Observation& o : problem.observationsOf(index))
     {
@@ -195,9 +196,8 @@ EliminatedCluster eliminate(const Problem& problem, int index, const std::vector
         Er.segment<3>(at) += E.transpose()*image.residuals.segment<2>(2*o.row);
         const double* const u = image.outer.data() + 2*o.row*image.outer.cols();
         const double* const v = u + image.outer.cols();
-        for (int k = 0; k < 3; k++)
-            for (size_t c = 0; c < image.columns.size(); c++)
-                FE(place[image.columns[c]], at + k) += E(0, k)*u[c] + E(1, k)*v[c];
+        for (size_t c = 0; c < image.columns.size(); c++)
+            FE.block<1, 3>(place[image.columns[c]], at) += u[c]*E.row(0) + v[c]*E.row(1);
     }
     cluster.addLengths(problem.pixelSigma(), EE, Er);
     const MatrixXd Y = inverseRoot(EE, result.points.isDetermined);
@@ -280,7 +280,7 @@ void subtractPose(int view, const std::vector<PoseColumns>& seen, std::vector<in
     {
         gradient.noalias() -= own.cluster->W.middleRows<SIZE>(own.first).lazyProduct(own.cluster->residual);
         const std::vector<int>& columns = own.cluster->points.columns;
-        const MatrixXd& W = own.cluster->W;
+        const RowMajorMatrix& W = own.cluster->W;
         for (int point = 0; point < (int)W.cols(); point += 3)
         {
             const Eigen::Matrix<double, SIZE, 3> ofView = W.block<SIZE, 3>(own.first, point);
