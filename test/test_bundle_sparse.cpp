@@ -349,6 +349,27 @@ TEST_CASE("A strip of four times as many views takes as many steps, and four tim
     CHECK(four.gain < 1e-9);
 }
 
+TEST_CASE("A point whose rays pass far from each other has no start, unless one is given", "[bundle][sparse]")
+{
+    CAPTURE(seed());
+    Random random(49);
+    const RigTruth truth = makeRig(1, { 0 }, 1.333);
+    BundleScene scene = makeStrip(truth, 6, random, 0.1);
+    const std::vector<Point3d> unknown(scene.points.size(), Point3d(NaN, NaN, NaN));
+    const auto isFinite = [](const Point3d& point) { return std::isfinite(point.x); };
+    const std::vector<Point3d> before = startPoints(*bundleAt(truth, scene, 0.1, 0), unknown);
+    const size_t far = std::find_if(before.begin() + 30, before.end(), isFinite) - before.begin();
+    size_t view = 0;
+    while (!isSeen(scene.pixels[0][view][far]))
+        view++;
+    scene.pixels[0][view][far].y += 200;        // across the strip: no depth makes up for it
+    const std::unique_ptr<Problem> bundle = bundleAt(truth, scene, 0.1, 0);
+    const std::vector<Point3d> points = startPoints(*bundle, unknown);
+    for (size_t i = 0; i < points.size(); i++)
+        CHECK(isFinite(points[i]) == (isFinite(before[i]) && i != far));
+    CHECK(isFinite(startPoints(*bundle, scene.points)[far]));
+}
+
 TEST_CASE("A strip's results do not depend on the number of threads", "[bundle][sparse]")
 {
     Random random(46);
