@@ -172,7 +172,7 @@ struct Found
     Ptr<RefractiveCamera> camera;
 };
 
-//! Poses are off by half a degree and 10 mm, but for the first.
+//! Cameras are off by half a degree and 10 mm, but for the first.
 Found adjust(const Survey& survey, int flags)
 {
     std::mt19937_64 engine(7);
@@ -181,8 +181,13 @@ Found adjust(const Survey& survey, int flags)
     found.camera = makeCamera(&engine, prior);
     for (size_t view = 0; view < survey.rvecs.size(); view++)
     {
-        found.rvecs.push_back(Mat(survey.rvecs[view] + (view > 0)*randomVector(engine, 0.5*CV_PI/180), true));
-        found.tvecs.push_back(Mat(survey.tvecs[view] + (view > 0)*randomVector(engine, 10), true));
+        Matx33d R, offR;
+        Rodrigues(survey.rvecs[view], R);
+        const Vec3d rvec = survey.rvecs[view] + (view > 0)*randomVector(engine, 0.5*CV_PI/180);
+        const Vec3d centre = -(R.t()*survey.tvecs[view]) + (view > 0)*randomVector(engine, 10);
+        Rodrigues(rvec, offR);
+        found.rvecs.push_back(Mat(rvec, true));
+        found.tvecs.push_back(Mat(-(offR*centre), true));
     }
     found.points.assign(survey.points.size(), Point3d(NAN, NAN, NAN));
     const double begin = processorSeconds(), clock = (double)getTickCount();
