@@ -143,12 +143,17 @@ void findContradictions(const BundleStart& start, const Fit& fit, BundleFindings
             " is %.0f standard deviations from what the start says: it has changed since, or a given value is wrong", worst));
 }
 
+double shareLeftOut(const BundleAdjustment& adjustment)
+{
+    return adjustment.seenPixels > 0 ? 1. - (double)adjustment.usedPixels/adjustment.seenPixels : 0.;
+}
+
 /** px a coordinate, of all matches, what is left out counted where the robust fit cuts: what leaves out enough makes the rest of any wrong
 matches fit. */
 double noiseOfAll(const BundleAdjustment& adjustment)
 {
     const double CUT2 = -2.*std::log(1e-4);     // squared length of an error that is left out, in variances of a coordinate; 2 is usual
-    const double left = adjustment.seenPixels > 0 ? 1. - (double)adjustment.usedPixels/adjustment.seenPixels : 0.;
+    const double left = shareLeftOut(adjustment);
     return adjustment.fit.sigma*std::sqrt(1. - left + left*CUT2/2.);
 }
 
@@ -179,6 +184,7 @@ BundleFindings findingsOf(const BundleStart& start, const GivenLengths& lengths,
         findings.weak.push_back("so few data (every +- may be 1.4 times larger)");
     findContradictions(start, fit, findings);
     const double NOISIER = 5., NO_DETECTOR = 2.;     // px
+    const double MOST_LEFT_OUT = 1./3.;
     if (knownSigma > 0. && fit.sigma > NOISIER*knownSigma)
         findings.contradictions.push_back(format("the matches are off by %.3g px, where the noise is known to be %.3g px: matches are "
                                                  "wrong, or something is not as the start says", fit.sigma, knownSigma));
@@ -186,6 +192,10 @@ BundleFindings findingsOf(const BundleStart& start, const GivenLengths& lengths,
         findings.contradictions.push_back(format("the matches are off by %.3g px, more than found points are: are the cameras in the "
                                                  "order of the start, the pixels raw and not mirrored, and is what is not free as the "
                                                  "start says? (If they are that noisy, say --pixel-sigma)", noiseOfAll(adjustment)));
+    else if (shareLeftOut(adjustment) > MOST_LEFT_OUT)
+        findings.contradictions.push_back(format("%.0f %% of the pixels do not fit the others, and so many wrong ones agree with each "
+                                                 "other, too: are the cameras in the order of the start, the pixels raw and not mirrored?",
+                                                 100.*shareLeftOut(adjustment)));
     findings.maxRms = maxRms;
     findings.limitMet = !(maxRms > 0.) || fit.rms <= maxRms;
     return findings;
