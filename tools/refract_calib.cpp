@@ -264,7 +264,7 @@ void takeStd(const Options& o, const Target* target, RigOptions& rig)
     GivenValues given;
     given.layers = rig.layers;
     given.outer = rig.outer;
-    given.equalMedia = rig.window.innerIndex == rig.window.outerIndex;
+    given.equalMedia = !hasDifferentMedia(rig.window);
     given.distance = o.window.isDistanceSaid();
     given.shape = rig.window.shape;
     given.square = target ? target->square() : 0.;
@@ -301,7 +301,7 @@ void readWindow(const Options& o, RigOptions& rig)
     takeNormals(o, rig);
     if (!o.poses.empty())
         rig.flags |= GLASS_USE_POSES;
-    if (rig.window.innerIndex != rig.window.outerIndex && !o.window.isDistanceSaid() && !isRound(rig.window))
+    if (hasDifferentMedia(rig.window) && !o.window.isDistanceSaid() && !isRound(rig.window))
         rig.flags |= GLASS_FREE_DISTANCE;
 }
 

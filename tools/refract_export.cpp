@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "calibrate/calib_file.hpp"
+#include "calibrate/window_face.hpp"
 #include "console/cli.hpp"
 #include "console/file_output.hpp"
 #include "console/numbers.hpp"
@@ -110,7 +111,7 @@ CentralCamera bestCentralCamera(const Options& options, const cv::Ptr<cv::refrac
         return fitCentralCamera(camera, range, options.coefficients, name);
     const cv::refract::GlassWindow window = camera->window();
     const bool isMrcals = camera->lensModel().find("LENSMODEL_") == 0;
-    if (options.target == "mrcal" && isMrcals && window.thickness.empty() && window.innerIndex == window.outerIndex)
+    if (options.target == "mrcal" && isMrcals && !refracts(window))
         return centralCamera(camera, range);
     if (camera->lensModel() == "fisheye" && isKnown(0))
         return fitCentralCamera(camera, range, 0, name);

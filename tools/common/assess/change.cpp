@@ -73,8 +73,7 @@ void turnAxis(RigModel& rig, int owner, const Vec3d& by)
 
 bool hasTwoMedia(const RigModel& rig, int c)
 {
-    const GlassWindow window = rig.cameras[c]->window();
-    return window.innerIndex != window.outerIndex;
+    return hasDifferentMedia(rig.cameras[c]->window());
 }
 
 bool looksThroughWindow(const RigModel& rig, int c)

@@ -55,7 +55,7 @@ GivenWindow givenWindow(const BundleOptions& options, const Calibration& file)
     for (const std::string& name : options.free)
         flags |= name == NONE ? 0 : flagOf(name);
     const GivenWindow given = options.window.of(flags, file.channel);
-    const bool needsDistance = !isRound(given.window) && given.window.innerIndex != given.window.outerIndex;
+    const bool needsDistance = !isRound(given.window) && hasDifferentMedia(given.window);
     if (needsDistance && !options.window.isDistanceSaid())
         throw Failure("--distance is needed, from the camera's centre of projection to the window, as on its other side is another medium: "
                       "a ruler will do (--distance-std says how well it is known)");
@@ -77,11 +77,8 @@ void takeWindows(const BundleOptions& options, const std::string& path, Calibrat
     if (options.noWindow)
         throw Failure("--no-window says that there is none: leave --window, --thickness, --index and their kin out");
     // A glass_window without layers, in one medium, is none, either: programs that write all keys write it.
-    const auto refracts = [](const CameraCalibration& c) {
-        const GlassWindow window = c.camera->window();
-        return !window.thickness.empty() || window.innerIndex != window.outerIndex;
-    };
-    if (std::any_of(file.cameras.begin(), file.cameras.end(), refracts))
+    const auto hasWindow = [](const CameraCalibration& c) { return refracts(c.camera->window()); };
+    if (std::any_of(file.cameras.begin(), file.cameras.end(), hasWindow))
         throw Failure("'" + path + "' has a glass_window, which says what the cameras look through: leave --window, --thickness, --index "
                       "and their kin out, or the glass_window");
     if (!file.covariance.empty())
@@ -155,7 +152,7 @@ void requireFreeOfWindows(const std::string& path, const RigModel& rig, int flag
     {
         const GlassWindow window = camera->window();
         requireFreeOfShape(window, flags);
-        if (window.innerIndex == window.outerIndex && (flags & GLASS_FREE_OUTER_INDEX))
+        if (!hasDifferentMedia(window) && (flags & GLASS_FREE_OUTER_INDEX))
             throw Failure("--free=outer-index: '" + path + "' has a window with the same medium on both sides; that medium is what "
                           "indices are relative to. Leave it out");
         if (window.thickness.empty() && (flags & (GLASS_FREE_WEDGE | GLASS_FREE_CURVATURE)))
@@ -184,7 +181,7 @@ GivenStd stdOf(const GlassWindow& window, const RigModel& rig, const BundleOptio
                int flags)
 {
     GivenValues given = givenValuesOf(window, options, file);
-    given.equalMedia = window.innerIndex == window.outerIndex;
+    given.equalMedia = !hasDifferentMedia(window);
     given.distance = !given.equalMedia;
     given.shape = window.shape;
     for (const cv::Ptr<RefractiveCamera>& camera : rig.cameras)

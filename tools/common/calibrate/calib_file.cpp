@@ -3,6 +3,7 @@
 
 #include "calibrate/calib_file.hpp"
 #include "calibrate/rig_data.hpp"
+#include "calibrate/window_face.hpp"
 #include "console/cli.hpp"
 #include "console/file_output.hpp"
 #include "console/keys.hpp"
@@ -82,11 +83,6 @@ void writeCamera(FileStorage& fs, const CameraCalibration& calibration)
     }
     if (calibration.rms >= 0)
         fs << "rms" << calibration.rms;
-}
-
-bool refracts(const cv::refract::GlassWindow& window)
-{
-    return !window.thickness.empty() || window.innerIndex != window.outerIndex;
 }
 
 bool isCameraModel(const std::string& filename)

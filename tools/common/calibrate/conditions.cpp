@@ -16,7 +16,7 @@ namespace {
 
 void requireDistance(const GlassWindow& window, const Medium& medium, size_t camera, const std::string& filename)
 {
-    if (!isRound(window) && window.innerIndex == window.outerIndex && medium.index.value != window.outerIndex)
+    if (!isRound(window) && !hasDifferentMedia(window) && medium.index.value != window.outerIndex)
         throw Failure(format("--outer-index: '%s' was calibrated with an index of %g on both sides of the window of camera %zu, where the "
                              "window's distance has no effect and is not known: calibrate with images that were taken in the other medium",
                              filename.c_str(), window.outerIndex, camera + 1));

@@ -201,7 +201,7 @@ GivenWindow GivenWindowOptions::of(int flags, Channel channel) const
         throw Failure(format("--thickness has %d, --index %d: both must have one number for each layer, with commas between layers and "
                              "points for decimals", (int)window.thickness.size(), (int)window.index.size()));
     requireMaterials(window);
-    if (window.thickness.empty() && window.innerIndex == window.outerIndex)
+    if (!refracts(window))
         throw Failure("there is no window to calibrate: give --thickness and --index, or an --outer-index that differs from "
                       "--inner-index (a bare water surface)");
     window.check();
@@ -227,7 +227,7 @@ const std::map<std::string, int>& freeFlags()
 void requireFreeOfShape(const GlassWindow& window, int flags)
 {
     const std::string shape = nameOfShape(window);
-    const bool isEqual = window.innerIndex == window.outerIndex;
+    const bool isEqual = !hasDifferentMedia(window);
     if (!isRound(window) && flags & GLASS_FREE_RADIUS)
         throw Failure("--free=radius is of a dome or tube, and a flat window has none: leave it out");
     if (isRound(window) && flags & GLASS_FREE_DISTANCE)

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "calibrate/light.hpp"
+#include "calibrate/window_face.hpp"
 #include "console/failure.hpp"
 #include "console/numbers.hpp"
 
@@ -37,11 +38,6 @@ ChannelWavelengths channelsOf(const std::vector<double>& numbers, const std::str
     if (numbers.size() != 3 || !(numbers[0] > numbers[1] && numbers[1] > numbers[2] && numbers[2] > 0))
         throw Failure(name + ": give the wavelengths of red, green and blue, nm, as 610,540,465");
     return {numbers[2], numbers[1], numbers[0]};
-}
-
-static bool refracts(const GlassWindow& window)
-{
-    return !window.thickness.empty() || window.innerIndex != window.outerIndex;
 }
 
 std::vector<Ptr<RefractiveCamera>> camerasInColours(const Ptr<RefractiveCamera>& camera, const ChannelWavelengths& wavelengths,

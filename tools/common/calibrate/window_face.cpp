@@ -45,7 +45,7 @@ std::string placeUnit(const GlassWindow& window, const std::string& unit) { retu
 const char* placeName(const GlassWindow& window) { return isRound(window) ? "centre" : "normal"; }
 
 WindowFace::WindowFace(const GlassWindow& window, double glass, Vec2d lean)
-    : isNone_(window.thickness.empty() && window.innerIndex == window.outerIndex)
+    : isNone_(!refracts(window))
 {
     if (isRound(window))
     {

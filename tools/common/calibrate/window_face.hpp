@@ -42,6 +42,9 @@ const char* nameOfShape(const cv::refract::GlassWindow& window);
 //! On its two sides.
 inline bool hasDifferentMedia(const cv::refract::GlassWindow& window) { return window.innerIndex != window.outerIndex; }
 
+//! There is something that bends rays: a pane, or the surface between two media.
+inline bool refracts(const cv::refract::GlassWindow& window) { return !window.thickness.empty() || hasDifferentMedia(window); }
+
 //! It has a centre and a radius.
 inline bool isRound(const cv::refract::GlassWindow& window)
 {

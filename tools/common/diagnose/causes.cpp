@@ -100,7 +100,7 @@ struct GivenValue
 std::vector<GivenValue> givenValues(const RigOptions& options)
 {
     const GlassWindow& window = options.window;
-    const bool layers = !window.thickness.empty(), equalMedia = window.innerIndex == window.outerIndex, round = isRound(window);
+    const bool layers = !window.thickness.empty(), equalMedia = !hasDifferentMedia(window), round = isRound(window);
     std::vector<double> indices;
     for (size_t i = 0; i < window.index.size(); i++)
         indices.push_back(options.std.indexOf(i));
@@ -174,7 +174,7 @@ Cause valueCause(const FittedRig& rig, const GivenValue& given, const std::vecto
     const std::string value = typed(rig.options, given);
     const double glass = glassOf(rig.options.window);
     const GlassWindow& window = rig.options.window;
-    const bool isRatio = given.flag == GLASS_FREE_THICKNESS && owners == rig.windowOwners() && window.innerIndex == window.outerIndex
+    const bool isRatio = given.flag == GLASS_FREE_THICKNESS && owners == rig.windowOwners() && !hasDifferentMedia(window)
                          && !(rig.options.flags & GLASS_USE_POSES);
     const double square = isRatio ? squareOf(rig.data) : 0.;
     return {format("%s %d", given.option, owners.size() == 1 ? owners[0] : -1), {shift},

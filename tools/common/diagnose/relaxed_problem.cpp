@@ -4,6 +4,7 @@
 #include "diagnose/relaxed_problem.hpp"
 #include "diagnose/rig_vector.hpp"
 #include "calibrate/parameter_columns.hpp"
+#include "calibrate/window_face.hpp"
 #include "math/dense.hpp"
 #include <cmath>
 
@@ -50,7 +51,7 @@ bool showsDistanceByWedge(const Fit& fit, int camera)
 {
     const ParameterColumns at = columnsOf(fit.rig, camera);
     const GlassWindow& window = fit.rig.cameras[camera]->window();
-    return fit.rig.ownsWindow(camera) && window.innerIndex == window.outerIndex && at.wedge < at.curvature
+    return fit.rig.ownsWindow(camera) && !hasDifferentMedia(window) && at.wedge < at.curvature
         && fit.stdDeviations.at<double>(at.wedge) > 0.;
 }
 

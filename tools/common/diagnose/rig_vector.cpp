@@ -63,7 +63,7 @@ GlassWindow seenFrom(GlassWindow window, const RigidTransform& there)
         window.thickness[i] += next - offset;
         offset = next;
     }
-    if (window.innerIndex == window.outerIndex)
+    if (!hasDifferentMedia(window))
         window.distance = std::max(0., window.distance);
     return window;
 }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "export/colmap_port.hpp"
+#include "calibrate/window_face.hpp"
 #include "console/failure.hpp"
 
 namespace tools {
@@ -11,7 +12,7 @@ using cv::refract::RefractiveCamera;
 
 ColmapPort colmapPortOf(const GlassWindow& window, const std::string& name, const std::string& program)
 {
-    if (window.thickness.empty() && window.innerIndex == window.outerIndex)
+    if (!refracts(window))
         return {};
     const bool isDome = window.shape == cv::refract::WINDOW_DOME, isFlat = window.shape == cv::refract::WINDOW_FLAT;
     if ((!isDome && !isFlat) || window.thickness.size() > 1)

@@ -270,7 +270,7 @@ Figure drawRig(const RigCalibration& c, double azimuthDeg)
          << "$names using 1:2:3 with labels offset 0,1 font ',12' textcolor rgb '#0f172a' notitle, "
          << "$bar with lines linewidth 2 linecolor rgb '#475569' notitle\n";
     const GlassWindow window = c.fit.rig.cameras[0]->window();
-    const bool isHidden = !isRound(window) && window.innerIndex == window.outerIndex;
+    const bool isHidden = !isRound(window) && !hasDifferentMedia(window);
     return {plot.svg(), isHidden ? "the windows' distances do not show in the images, they are drawn as given" : ""};
 }
 

@@ -228,7 +228,7 @@ Figure drawSideView(const RigCalibration& calibration, int camera, int axis)
         return {plot.svg(), ""};
     std::string note = widened > 1 ? format("the cone of the normal is widened %g times", widened)
                                    : std::string("the cone of the normal is drawn as it is");
-    if (window.innerIndex == window.outerIndex)
+    if (!hasDifferentMedia(window))
         note += format("; the window's distance does not show in the images, it is drawn at %g", window.distance);
     return {plot.svg(), note};
 }

@@ -72,7 +72,7 @@ void addShape(const RigCalibration& c, GivenRows& rows)
                  " " + c.unit);
     if (window.shape == WINDOW_BENT && !(c.options.flags & GLASS_FREE_CURVATURE))
         rows.add("bow", "0 mm per m", std.bow, " mm per m");
-    if (!isRound(window) && window.innerIndex != window.outerIndex && !(c.options.flags & GLASS_FREE_DISTANCE))
+    if (!isRound(window) && hasDifferentMedia(window) && !(c.options.flags & GLASS_FREE_DISTANCE))
         rows.add("distance to the window", format("%g %s", window.distance, c.unit.c_str()), std.distance, " " + c.unit);
 }
 

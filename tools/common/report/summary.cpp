@@ -144,7 +144,7 @@ static std::vector<SummaryRow> normalRows(const RigCalibration& c)
     rows.push_back(row(c, "distance, " + c.unit, [&](int k) {
         const GlassWindow w = window(k);
         const double std = deviation(k).distance;
-        return w.innerIndex == w.outerIndex && !(std > 0.) ? std::string("no effect") : estimateOr(w.distance, std, "given");
+        return !hasDifferentMedia(w) && !(std > 0.) ? std::string("no effect") : estimateOr(w.distance, std, "given");
     }));
     const double toBow = bowOf(1., c.unit);
     if (window(0).shape == WINDOW_BENT)

@@ -81,7 +81,7 @@ void addPlace(const RigCalibration& c, int camera, Json& json)
     json.set("normal", listOf(window.normal));
     json.set("normal_std_deg", std.normalDeg);
     json.set("tilt_deg", std::acos(std::min(1., window.normal[2]))*180./CV_PI);
-    json.set("distance", window.innerIndex == window.outerIndex && !(std.distance > 0.) ? Json() : estimate(window.distance, std.distance));
+    json.set("distance", !hasDifferentMedia(window) && !(std.distance > 0.) ? Json() : estimate(window.distance, std.distance));
     if (window.shape == WINDOW_BENT)
     {
         json.set("curvature", estimate(window.curvature, std.curvature));
