@@ -15,14 +15,11 @@ const double LEAST = 1e-14;         // of the damping: below it is rounding
 const double MOST = 1e16;
 const double FIRST_AFTER_FAILURE = 1e-8;
 
-/** @param ratio of the gain to what was foretold
-@param failed a damping with which a step failed not long ago: half the way to it is enough */
-double dampingAfter(double damping, double ratio, double failed)
+//! @param ratio of the gain to what was foretold
+double dampingAfter(double damping, double ratio)
 {
     const double GOOD = 0.9, FAIR = 0.25;
-    if (ratio > GOOD)
-        return std::max(LEAST, std::max(1e-2*damping, std::sqrt(std::min(failed, damping)*damping)));
-    return std::max(LEAST, damping*(ratio > FAIR ? 0.3 : 2));
+    return std::max(LEAST, damping*(ratio > GOOD ? 1e-2 : ratio > FAIR ? 0.3 : 2));
 }
 
 } // namespace
@@ -32,7 +29,6 @@ void DampedSteps::run(ReducedCost& cost)
     const int most = iterations;
     const double WEAK = 1e-6;       // damping that hides nothing
     double growth = 4;              // of the damping: failures in a row make it grow faster
-    double failed = 0, succeeded = 0;       // dampings
     isConverged = false;
     for (iterations = 0; iterations < most && damping < MOST && cost.linearize(); iterations++)
     {
@@ -53,16 +49,13 @@ void DampedSteps::run(ReducedCost& cost)
         isConverged = damping <= WEAK && std::abs(gain) <= change*squares;
         if (gain > 1e-3*foretold || (isConverged && gain >= 0))
         {
-            succeeded = damping;
-            damping = dampingAfter(damping, gain/foretold, failed);
-            failed *= 0.1;
+            damping = dampingAfter(damping, gain/foretold);
             growth = 4;
         }
         else
         {
             cost.restore();
-            failed = damping;
-            damping = succeeded > damping ? succeeded : std::max(FIRST_AFTER_FAILURE, growth*damping);
+            damping = std::max(FIRST_AFTER_FAILURE, growth*damping);
             growth *= 4;
         }
         if (isConverged)
