@@ -12,21 +12,17 @@ namespace cv { namespace refract {
 /* The best values of all inner blocks, the outer ones staying: each by Levenberg and Marquardt's steps on its own observations,
 from where it is. What inner iterations are to Ceres, and variable projection (Golub and Pereyra, 2003) to the rest. */
 
-const double TO_ROUNDING = 1e-12;       //!< part of a block's squares by which it may still come down
-
 /** @param squaredError of the problem there
-@param rest part of a cluster's squares by which it may still come down: linearised from there, the problem has the rest
 @return false where some point has no image, as the blocks are: there is no least squares near */
-bool optimizeInner(Problem& problem, double& squaredError, double rest = TO_ROUNDING);
+bool optimizeInner(Problem& problem, double& squaredError);
 
 bool optimizePoses(Problem& problem, double& squaredError);         //!< of targets
-bool optimizePoints(Problem& problem, double& squaredError, double rest);       //!< of a scene
+bool optimizePoints(Problem& problem, double& squaredError);        //!< of a scene
 
 /** A scene's clusters each by itself: the squares of each at its best, which is where it is then; infinite where one of its points has
 no image to begin with, and stays there.
-@param onlyTied those of several points; the others stay where they are, with squares of 0
-@param rest as above */
-std::vector<double> optimizeClusters(Problem& problem, bool onlyTied, double rest = TO_ROUNDING);
+@param onlyTied those of several points; the others stay where they are, with squares of 0 */
+std::vector<double> optimizeClusters(Problem& problem, bool onlyTied);
 //! The information of the coordinates of each cluster of several points where it is, the cameras staying.
 std::vector<Eigen::MatrixXd> informationOfTied(const Problem& problem);
 
@@ -42,8 +38,9 @@ public:
     bool isHopeless() const { return damping_ > 1e8; }
     void accept() { damping_ = damping_ < 1e-5 ? 0 : 0.1*damping_; }
     void reject() { damping_ = std::max(1e-3, 10*damping_); }
-    static bool isNegligible(double gain, double squaredError, double count, double rest = TO_ROUNDING)
-    { return !(gain > rest*squaredError + 1e-24*count); }
+    //! A gain that is below the rounding of what is summed.
+    static bool isNegligible(double gain, double squaredError, double count)
+    { return !(gain > 1e-12*squaredError + 1e-24*count); }
 
 private:
     double damping_ = 0;

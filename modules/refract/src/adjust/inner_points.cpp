@@ -153,7 +153,7 @@ std::vector<int> clustersOf(const Problem& problem, bool onlyTied)
 
 } // namespace
 
-std::vector<double> optimizeClusters(Problem& problem, bool onlyTied, double rest)
+std::vector<double> optimizeClusters(Problem& problem, bool onlyTied)
 {
     const int ROUNDS = 50;
     std::vector<Cluster>& clusters = problem.scene().clusters();
@@ -188,7 +188,7 @@ std::vector<double> optimizeClusters(Problem& problem, bool onlyTied, double res
             double gain;
             const VectorXd step = stepOf(search.best, search.control.damping(), gain);
             search.isDone = round + 1 == ROUNDS || search.control.isHopeless() ||
-                            StepControl::isNegligible(gain, std::max(mean, search.best.value), 6, rest);
+                            StepControl::isNegligible(gain, std::max(mean, search.best.value), 6);
             clusters[i].values = search.isDone ? search.values : VectorXd(search.values + step);
             problem.placeCluster(i);
         });
@@ -211,9 +211,9 @@ std::vector<MatrixXd> informationOfTied(const Problem& problem)
     return matrices;
 }
 
-bool optimizePoints(Problem& problem, double& squaredError, double rest)
+bool optimizePoints(Problem& problem, double& squaredError)
 {
-    const std::vector<double> squares = optimizeClusters(problem, false, rest);
+    const std::vector<double> squares = optimizeClusters(problem, false);
     squaredError = std::accumulate(squares.begin(), squares.end(), 0.);
     for (int block = 0; block < problem.outerCount(); block++)
         squaredError += problem.priorResidual(block).squaredNorm();

@@ -116,9 +116,9 @@ bool optimizePoses(Problem& problem, double& squaredError)
     return isPossible;
 }
 
-bool optimizeInner(Problem& problem, double& squaredError, double rest)
+bool optimizeInner(Problem& problem, double& squaredError)
 {
-    const bool isPossible = problem.hasScene() ? optimizePoints(problem, squaredError, rest) : optimizePoses(problem, squaredError);
+    const bool isPossible = problem.hasScene() ? optimizePoints(problem, squaredError) : optimizePoses(problem, squaredError);
     return isPossible && std::isfinite(squaredError);
 }
 

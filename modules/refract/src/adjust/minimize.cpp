@@ -111,7 +111,6 @@ private:
     std::vector<double> retreat_;           //!< per block: the part of its distance by which a window was moved from a target; 0: not
 };
 
-const double NEARLY = 1e-3;     // of a point's squares: a small part of what noise does to it
 const double FIRST_RETREAT = 1e-4, LAST_RETREAT = 1e-2;     // parts of the distance
 
 //! The coordinate of a free distance; -1: the block has none.
@@ -185,8 +184,6 @@ bool Minimization::solve(TrustRegion& region)
     for (Eigen::VectorXd& block : values)
         state.push_back(block.data());
     cost_->setState(state);
-    const bool areStepsOwn = problem_.hasScene() && region.strategy == ceres::LEVENBERG_MARQUARDT;
-    cost_->setRest(areStepsOwn ? NEARLY : TO_ROUNDING);
     if (!cost_->linearize())
         return false;
     if (state.empty())              // only inner blocks are free
@@ -196,7 +193,7 @@ bool Minimization::solve(TrustRegion& region)
         region.isIdle = true;
         return true;
     }
-    if (areStepsOwn)
+    if (problem_.hasScene() && region.strategy == ceres::LEVENBERG_MARQUARDT)
         descend(region);
     else
         solve(region, state);

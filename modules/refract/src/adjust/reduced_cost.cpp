@@ -13,8 +13,7 @@ namespace cv { namespace refract {
 using Eigen::VectorXd;
 
 ReducedCost::ReducedCost(Problem& problem)
-    : problem_(problem), cameras_(0), isPossible_(false), isCurrent_(false), isAnchor_(false), isLinear_(false), squaredError_(0),
-      rest_(TO_ROUNDING)
+    : problem_(problem), cameras_(0), isPossible_(false), isCurrent_(false), isAnchor_(false), isLinear_(false), squaredError_(0)
 {
     const FreeSpace space(problem, false);
     for (int block = 0; block < problem.outerCount(); block++)
@@ -22,12 +21,6 @@ ReducedCost::ReducedCost(Problem& problem)
             variable_.push_back(block);
     for (int block : variable_)
         cameras_ += problem.blocks()[block].kind != ParameterBlock::POSE;
-}
-
-void ReducedCost::setRest(double rest)
-{
-    isCurrent_ = isCurrent_ && rest_ <= rest;
-    rest_ = rest;
 }
 
 //! The problem to the state; false if it is there already.
@@ -133,11 +126,11 @@ bool ReducedCost::optimize()
     isAnchor_ = false;
     if (anchor_)
         predictInner();
-    isCurrent_ = optimizeInner(problem_, squaredError_, rest_);
+    isCurrent_ = optimizeInner(problem_, squaredError_);
     if (!isCurrent_ && anchor_)
     {
         setInnerValues(problem_, anchor_->inner);       // the prediction may have gone too far
-        isCurrent_ = optimizeInner(problem_, squaredError_, rest_);
+        isCurrent_ = optimizeInner(problem_, squaredError_);
     }
     return isCurrent_;
 }

@@ -21,8 +21,6 @@ class ReducedCost : public ceres::EvaluationCallback
 {
 public:
     explicit ReducedCost(Problem& problem);
-    //! How far inner blocks may be from their best (inner.hpp); what is left of that is in what the linearised problem foretells.
-    void setRest(double rest);
     const std::vector<int>& variableBlocks() const { return variable_; }
     /** Where Ceres has the values of the variable blocks, one after the other; before anything is asked. */
     void setState(const std::vector<double*>& state)
@@ -86,7 +84,6 @@ private:
     bool isAnchor_;                     //!< and the anchor is there
     bool isLinear_;                     //!< residuals are asked for with their derivatives
     double squaredError_;
-    double rest_;
 };
 
 }} // namespace
