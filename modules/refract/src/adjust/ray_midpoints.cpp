@@ -8,7 +8,6 @@ with the sheet's normal m it is the plane: m_i m_i^T (X - o_i). */
 #include "adjust/ray_midpoints.hpp"
 #include "arrays/arrays.hpp"
 #include "math/dense.hpp"
-#include "math/robust_scale.hpp"
 #include "points/sheet.hpp"
 
 namespace cv { namespace refract {
@@ -129,16 +128,18 @@ std::vector<double> worstErrors(const Problem& problem, const Rig& rig, const st
     return worst;
 }
 
-/** Where rays pass far from each other, what is nearest to them may lie anywhere, and no step leads back from there.
-@return of squared errors, what is absurd */
-double absurd(const std::vector<double>& worst, const std::vector<Point3d>& points)
+//! Squared, of all pixels: no two are farther apart.
+double squaredExtent(const Problem& problem)
 {
-    const double FAR = 30, LEAST = 10;      // times what is usual; px
-    std::vector<double> some;
-    for (size_t i = 0; i < worst.size(); i++)
-        if (std::isfinite(points[i].x) && std::isfinite(worst[i]))
-            some.push_back(worst[i]);
-    return some.empty() ? 0 : std::max(FAR*FAR*median(some), LEAST*LEAST);
+    const double inf = std::numeric_limits<double>::infinity();
+    Point2d least(inf, inf), most(-inf, -inf);
+    for (const Image& image : problem.images())
+        for (const Point2d& p : image.points.pixel)     // a coordinate that is not known counts for none
+        {
+            least = Point2d(p.x < least.x ? p.x : least.x, p.y < least.y ? p.y : least.y);
+            most = Point2d(p.x > most.x ? p.x : most.x, p.y > most.y ? p.y : most.y);
+        }
+    return squaredDistance(least, most);
 }
 
 } // namespace
@@ -161,7 +162,8 @@ std::vector<Point3d> startPoints(const Problem& problem, const std::vector<Point
         else if (!std::isfinite(given[i].x))
             points[i] = Point3d(sums[i].point()/problem.sceneScale());
     const std::vector<double> worst = worstErrors(problem, rig, points);
-    const double most = absurd(worst, points);
+    // Where rays pass far from each other, what is nearest to them may lie anywhere. From beyond all images no step leads back.
+    const double most = squaredExtent(problem);
     for (size_t i = 0; i < points.size(); i++)
         if (std::isinf(worst[i]) || (worst[i] > most && !std::isfinite(given[i].x)))
             points[i] = Point3d(NaN, NaN, NaN);
