@@ -349,30 +349,6 @@ TEST_CASE("A strip of four times as many views takes as many steps, and four tim
     CHECK(four.gain < 1e-9);
 }
 
-TEST_CASE("A point with a wrong pixel has a start, as the fit is to tell that it is wrong", "[bundle][sparse]")
-{
-    CAPTURE(seed());
-    Random random(49);
-    const RigTruth truth = makeRig(1, { 0 }, 1.333);
-    const BundleScene scene = makeStrip(truth, 6, random, 0.1);
-    const std::vector<Point3d> unknown(scene.points.size(), Point3d(NaN, NaN, NaN));
-    const auto isFinite = [](const Point3d& point) { return std::isfinite(point.x); };
-    const std::vector<Point3d> before = startPoints(*bundleAt(truth, scene, 0.1, 0), unknown);
-    const size_t wrong = std::find_if(before.begin() + 30, before.end(), isFinite) - before.begin();
-    size_t view = 0;
-    while (!isSeen(scene.pixels[0][view][wrong]))
-        view++;
-    for (double across : { -200., -20., 20., 200. })        // no depth makes up for it
-    {
-        BundleScene changed = scene;
-        changed.pixels[0][view][wrong].y += across;
-        const std::unique_ptr<Problem> bundle = bundleAt(truth, changed, 0.1, 0);
-        const std::vector<Point3d> points = startPoints(*bundle, unknown);
-        for (size_t i = 0; i < points.size(); i++)
-            CHECK(isFinite(points[i]) == isFinite(before[i]));
-    }
-}
-
 TEST_CASE("A strip's results do not depend on the number of threads", "[bundle][sparse]")
 {
     Random random(46);

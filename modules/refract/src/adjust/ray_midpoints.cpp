@@ -83,63 +83,13 @@ void addRays(const Camera& camera, const RigidTransform& place, const ImagePoint
     }
 }
 
-//! Squared, from where points of an image are seen to where they are projected; infinite without image; NaN: the point is not known.
-std::vector<double> squaredErrors(const Camera& camera, const RigidTransform& place, double scale, const ImagePoints& image,
-                                  const std::vector<Point3d>& points)
+bool hasImage(const Camera& camera, const RigidTransform& place, const Point3d& point)
 {
-    std::vector<double> errors(image.index.size(), NaN);
-    for (int begin = 0; begin < (int)errors.size(); begin += BLOCK)
-    {
-        const int n = std::min(BLOCK, (int)errors.size() - begin);
-        double x[BLOCK], y[BLOCK], z[BLOCK], u[BLOCK], v[BLOCK];
-        uchar status[BLOCK];
-        for (int k = 0; k < n; k++)
-        {
-            const Point3d& point = points[image.index[begin + k]];
-            const Vec3d X = std::isfinite(point.x) ? place.apply(Vec3d(point)*scale) : Vec3d(0, 0, 1);
-            x[k] = X[0]; y[k] = X[1]; z[k] = X[2];
-            status[k] = REFRACT_OK;
-        }
-        camera.project(n, x, y, z, nullptr, u, v, status);
-        for (int k = 0; k < n; k++)
-            if (std::isfinite(points[image.index[begin + k]].x))
-                errors[begin + k] = status[k] == REFRACT_OK ? squaredDistance(Point2d(u[k], v[k]), image.pixel[begin + k])
-                                                            : std::numeric_limits<double>::infinity();
-    }
-    return errors;
-}
-
-//! Of each point the largest of its squared errors; infinite where one image cannot see it.
-std::vector<double> worstErrors(const Problem& problem, const Rig& rig, const std::vector<Point3d>& points)
-{
-    const std::vector<Image>& images = problem.images();
-    std::vector<std::vector<double> > errors(images.size());
-    parallel_for_(Range(0, (int)images.size()), [&](const Range& range)
-    {
-        for (int i = range.start; i < range.end; i++)
-            errors[i] = squaredErrors(rig.cameras[images[i].camera], placeOf(problem, rig, images[i]), problem.sceneScale(),
-                                      images[i].points, points);
-    });
-    std::vector<double> worst(points.size(), 0.);
-    for (size_t i = 0; i < images.size(); i++)
-        for (size_t k = 0; k < errors[i].size(); k++)
-            if (errors[i][k] > worst[images[i].points.index[k]])
-                worst[images[i].points.index[k]] = errors[i][k];
-    return worst;
-}
-
-//! Squared, of all pixels: no two are farther apart.
-double squaredExtent(const Problem& problem)
-{
-    const double inf = std::numeric_limits<double>::infinity();
-    Point2d least(inf, inf), most(-inf, -inf);
-    for (const Image& image : problem.images())
-        for (const Point2d& p : image.points.pixel)     // a coordinate that is not known counts for none
-        {
-            least = Point2d(p.x < least.x ? p.x : least.x, p.y < least.y ? p.y : least.y);
-            most = Point2d(p.x > most.x ? p.x : most.x, p.y > most.y ? p.y : most.y);
-        }
-    return squaredDistance(least, most);
+    const Vec3d X = place.apply(Vec3d(point));
+    double u, v;
+    uchar status = REFRACT_OK;
+    camera.project(1, &X[0], &X[1], &X[2], nullptr, &u, &v, &status);
+    return status == REFRACT_OK;
 }
 
 } // namespace
@@ -148,10 +98,12 @@ std::vector<Point3d> startPoints(const Problem& problem, const std::vector<Point
 {
     const Rig rig = problem.rig();
     std::vector<RaySum> sums(given.size());
+    std::vector<RigidTransform> places;
     std::vector<int> seen(given.size(), 0);         // coordinates
     for (const Image& image : problem.images())
     {
-        addRays(rig.cameras[image.camera], placeOf(problem, rig, image), image.points, std::vector<uchar>(), sums);
+        places.push_back(placeOf(problem, rig, image));
+        addRays(rig.cameras[image.camera], places.back(), image.points, std::vector<uchar>(), sums);
         for (size_t k = 0; k < image.points.index.size(); k++)
             seen[image.points.index[k]] += image.points.rowsOf(k);
     }
@@ -161,12 +113,14 @@ std::vector<Point3d> startPoints(const Problem& problem, const std::vector<Point
             points[i] = Point3d(NaN, NaN, NaN);
         else if (!std::isfinite(given[i].x))
             points[i] = Point3d(sums[i].point()/problem.sceneScale());
-    const std::vector<double> worst = worstErrors(problem, rig, points);
-    // Where rays pass far from each other, what is nearest to them may lie anywhere. From beyond all images no step leads back.
-    const double most = squaredExtent(problem);
-    for (size_t i = 0; i < points.size(); i++)
-        if (std::isinf(worst[i]) || (worst[i] > most && !std::isfinite(given[i].x)))
-            points[i] = Point3d(NaN, NaN, NaN);
+    for (size_t k = 0; k < places.size(); k++)
+    {
+        const Image& image = problem.images()[k];
+        for (int index : image.points.index)
+            if (std::isfinite(points[index].x) && !hasImage(rig.cameras[image.camera], places[k],
+                                                              points[index]*problem.sceneScale()))
+                points[index] = Point3d(NaN, NaN, NaN);
+    }
     return points;
 }
 

@@ -5,7 +5,6 @@
 #include "adjust/reduced_cost.hpp"
 #include "adjust/inner.hpp"
 #include "math/dense.hpp"
-#include "math/rotation.hpp"
 #include <ceres/manifold.h>
 
 namespace cv { namespace refract {
@@ -38,25 +37,9 @@ bool ReducedCost::move()
     return hasMoved;
 }
 
-/** A pose of which the centre moves on a straight line, as the points do: where a strip bends far from the scene's origin, a straight
-line of the translation would have the cameras leave them. To first order it is the same. */
-static VectorXd movedPose(const VectorXd& from, const VectorXd& step)
-{
-    const Vec3d turn(step.data()), shift(step.data() + 3), rvec(from.data()), tvec(from.data() + 3);
-    const Rotation rotation(rvec.val);
-    const Vec3d centre = -(rotation.R.t()*tvec);
-    const Vec3d moved = centre - rotation.R.t()*(shift + rotation.derivativeOf(centre)*turn), to = rvec + turn;
-    const Vec3d translation = -(rotationMatrix(to)*moved);
-    VectorXd pose(6);
-    pose << to[0], to[1], to[2], translation[0], translation[1], translation[2];
-    return pose;
-}
-
 //! Other values of a block after a step of its free coordinates, no lower than their bounds.
 static VectorXd moved(const ParameterBlock& block, const VectorXd& from, const VectorXd& step)
 {
-    if (block.kind == ParameterBlock::POSE)
-        return movedPose(from, step);
     if (!block.isOnManifold())
         return (from + timesVector(block.tangentBasis(false), step)).cwiseMax(Eigen::Map<const VectorXd>(block.lower.data(), from.size()));
     const std::unique_ptr<ceres::Manifold> manifold = block.manifold();
@@ -70,7 +53,6 @@ static VectorXd moved(const ParameterBlock& block, const VectorXd& from, const V
 
 void ReducedCost::setStep(const VectorXd& step)
 {
-    step_ = step;
     for (size_t i = 0; i < variable_.size(); i++)
     {
         const ParameterBlock& block = problem_.blocks()[variable_[i]];
@@ -81,7 +63,6 @@ void ReducedCost::setStep(const VectorXd& step)
 
 void ReducedCost::restore()
 {
-    step_.resize(0);
     for (size_t i = 0; i < variable_.size(); i++)
         Eigen::Map<VectorXd>(state_[i], anchor_->values[i].size()) = anchor_->values[i];
     move();
@@ -96,26 +77,20 @@ void ReducedCost::predictInner()
     for (size_t i = 0; i < variable_.size(); i++)
     {
         const int block = variable_[i], own = anchor_->space.columnsOf(block);
-        const int first = anchor_->space.first[block];
-        const bool isStep = step_.size() > 0 && problem_.blocks()[block].kind == ParameterBlock::POSE;     // it has no bounds
-        change.segment(first, own) = isStep ? VectorXd(step_.segment(first, own)) :
+        change.segment(anchor_->space.first[block], own) =
             transposeTimesVector(anchor_->space.bases[block], problem_.blocks()[block].values - anchor_->values[i]);
     }
-    const std::vector<InnerBlock>& blocks = anchor_->information.inner;
-    std::vector<int> first(1, 0);
-    for (const InnerBlock& block : blocks)
-        first.push_back(first.back() + (int)block.step.size());
     VectorXd inner = anchor_->inner;
-    parallel_for_(Range(0, (int)blocks.size()), [&](const Range& range)
+    int at = 0;
+    for (const InnerBlock& block : anchor_->information.inner)
     {
-        for (int i = range.start; i < range.end; i++)
-        {
-            auto own = inner.segment(first[i], blocks[i].step.size());
-            own += blocks[i].step;
-            for (size_t k = 0; k < blocks[i].columns.size(); k++)
-                own += change[blocks[i].columns[k]]*blocks[i].byOuter.col(k);
-        }
-    });
+        const int size = (int)block.byOuter.rows();
+        VectorXd own(block.columns.size());
+        for (size_t k = 0; k < block.columns.size(); k++)
+            own[k] = change[block.columns[k]];
+        inner.segment(at, size) += timesVector(block.byOuter, own);
+        at += size;
+    }
     setInnerValues(problem_, inner);
 }
 

@@ -23,11 +23,7 @@ public:
     explicit ReducedCost(Problem& problem);
     const std::vector<int>& variableBlocks() const { return variable_; }
     /** Where Ceres has the values of the variable blocks, one after the other; before anything is asked. */
-    void setState(const std::vector<double*>& state)
-    {
-        state_ = state;
-        step_.resize(0);
-    }
+    void setState(const std::vector<double*>& state) { state_ = state; }
     //! What the state is after a step of the free coordinates from where it was linearised last, within its bounds.
     void setStep(const Eigen::VectorXd& step);
     void restore();                     //!< to where it was linearised last
@@ -77,7 +73,6 @@ private:
     std::vector<int> variable_;
     int cameras_;                       //!< of these the first ones; the others are poses
     std::vector<double*> state_;
-    Eigen::VectorXd step_;              //!< that the state was set by; empty: by none
     std::unique_ptr<Anchor> anchor_;
     bool isPossible_;                   //!< there is a cost where it was asked for last
     bool isCurrent_;                    //!< the inner blocks are the best at the problem's outer ones
