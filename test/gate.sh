@@ -80,7 +80,7 @@ first=$((($(turn_of 136) - 1)/34))      # the next part after a round of the sli
 for i in 0 1 2 3; do
   # shellcheck disable=SC2046  # words
   part=$(echo slow_tests sanitizers fuzzers slice | cut -d ' ' -f $(((first + i) % 4 + 1)))
-  if [ $i = 0 ] || [ "$scope" != --all ] || [ $(($(date +%s) - begun)) -lt 2100 ]; then     # each takes up to 25 minutes
+  if [ $i = 0 ] || [ "$scope" != --all ] || [ $(($(date +%s) - begun)) -lt 1500 ]; then     # each takes up to 25 minutes
     "part_$part"
   else
     echo "left for its turn, as the hour is nearly over: $part"
