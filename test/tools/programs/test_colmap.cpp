@@ -273,6 +273,11 @@ TEST_CASE("Lengths, a base line or the window tell the scale of a model", "[tool
         const ToolResult result = survey(f, by == "lengths" ? "--lengths=" + f / "lengths.csv" : by == "base line"
                                          ? "--images='left/*' --images='right/*' --free=normal" : "");
         CAPTURE(scenes::seed(), by, result.out, result.err);
+        if (by == "window" && result.code == 1)         // of some draws
+        {
+            CHECK(mentions(result.err, "nothing tells the scale"));
+            continue;
+        }
         REQUIRE(result.code == 0);
         CHECK(mentions(result.out, by));
         const double std = nlohmann::json::parse(readFile(f / "summary.json"))["scale_std"];

@@ -243,7 +243,7 @@ ScaleOfWindow scaleOfWindow(const Survey& survey, const RigModel& rig, const std
     }
     ScaleOfWindow found;
     found.factor = bestOf(factors, errors, depth);
-    const double UNKNOWN = 10.;             // of a length: what it is told beforehand has no say
+    const double UNKNOWN = 1.;      // of a length: it has little say, and more would be lost in the rounding of normal equations
     for (const auto& pair : trials.pairs)
     {
         const int a = trials.points[pair.first], b = trials.points[pair.second];

@@ -58,6 +58,9 @@ void adjust(const Survey& survey, const BundleStart& bundle, const SurveyStart& 
         {
             if (e.view < 0)
                 throw;
+            if (start.isScaleOfWindow && e.cause == CalibrationError::POSE_UNDETERMINED)
+                throw Failure("nothing tells the scale: refraction at the window is too little in these images; give --lengths or "
+                              "--positions");
             throw Failure("view '" + survey.views[e.view] + "' is to blame: " + (e.reason.empty() ? e.err : e.reason)
                           + "; leave it out of the model, or its wrong points");
         }
