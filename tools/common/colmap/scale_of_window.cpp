@@ -18,7 +18,6 @@ namespace tools {
 namespace {
 
 const int IMAGES = 8, POINTS = 250, PAIRS = 10;     // of the trials
-const char ADVICE[] = "; give --lengths or --positions";
 const double INFINITE = std::numeric_limits<double>::infinity();
 
 //! The part of a survey that tries scales: some images, the points that most of them show.
@@ -209,13 +208,13 @@ double bestOf(const std::vector<double>& factors, const std::vector<double>& err
 {
     const int best = (int)(std::min_element(errors.begin(), errors.end()) - errors.begin()), last = (int)errors.size() - 1;
     if (!std::isfinite(errors[best]))
-        throw Failure("nothing tells the scale: at no distance of the scene do rays through the window meet" + std::string(ADVICE));
+        throw Failure("nothing tells the scale: at no distance of the scene do rays through the window meet" + std::string(SCALE_ADVICE));
     if (best == 0 || !std::isfinite(errors[best - 1]))
         throw Failure(format("nothing tells the scale: rays through the window meet best with the scene at %.3g or nearer",
-                             factors[best]*depth) + ADVICE);
+                             factors[best]*depth) + SCALE_ADVICE);
     if (best == last || !std::isfinite(errors[best + 1]))
         throw Failure(format("nothing tells the scale: rays through the window meet best with the scene at %.3g or farther",
-                             factors[best]*depth) + ADVICE);
+                             factors[best]*depth) + SCALE_ADVICE);
     return leastOf(factors, errors, best);
 }
 
@@ -226,7 +225,7 @@ ScaleOfWindow scaleOfWindow(const Survey& survey, const RigModel& rig, const std
     const double STEP = 1.4, NEAREST = 1.5, FARTHEST = 300.;        // of the window's reach
     const double reach = reachOf(rig), depth = medianDepth(survey);
     if (!(reach > 0))
-        throw Failure("nothing tells the scale: there is no window that would" + std::string(ADVICE));
+        throw Failure("nothing tells the scale: there is no window that would" + std::string(SCALE_ADVICE));
     if (!(depth > 0))
         throw Failure("'" + folder + "': most of its points are behind its images: was it mirrored?");
     Trials trials = trialsOf(survey);

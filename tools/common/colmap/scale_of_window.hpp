@@ -9,6 +9,9 @@
 
 namespace tools {
 
+//! What to do where nothing tells the scale.
+const char SCALE_ADVICE[] = "; give --lengths or --positions";
+
 //! What refraction tells of the unit of a model.
 struct ScaleOfWindow
 {

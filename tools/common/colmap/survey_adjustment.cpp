@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "colmap/survey_adjustment.hpp"
+#include "colmap/scale_of_window.hpp"
 #include "console/failure.hpp"
 #include "console/progress.hpp"
 
@@ -59,8 +60,8 @@ void adjust(const Survey& survey, const BundleStart& bundle, const SurveyStart& 
             if (e.view < 0)
                 throw;
             if (start.isScaleOfWindow && e.cause == CalibrationError::POSE_UNDETERMINED)
-                throw Failure("nothing tells the scale: refraction at the window is too little in these images; give --lengths or "
-                              "--positions");
+                throw Failure(std::string("nothing tells the scale: refraction at the window is too little in these images")
+                              + SCALE_ADVICE);
             throw Failure("view '" + survey.views[e.view] + "' is to blame: " + (e.reason.empty() ? e.err : e.reason)
                           + "; leave it out of the model, or its wrong points");
         }
