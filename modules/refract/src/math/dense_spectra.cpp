@@ -4,7 +4,6 @@
 
 #include "math/dense.hpp"
 #include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
 
 namespace cv { namespace refract {
 
@@ -43,13 +42,6 @@ SymmetricEigen3::SymmetricEigen3(const Eigen::Matrix3d& A)
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(A);
     values = eigen.eigenvalues();
     vectors = eigen.eigenvectors();
-}
-
-SingularValues::SingularValues(const MatrixRef& A)
-{
-    const Eigen::JacobiSVD<MatrixXd> svd(A, Eigen::ComputeFullV);
-    values = svd.singularValues();
-    V = svd.matrixV();
 }
 
 }} // namespace
