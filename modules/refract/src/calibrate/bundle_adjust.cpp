@@ -5,7 +5,8 @@
 /* Public functions of the bundle adjustment: arguments and results; of pixels: bundle_images.cpp. */
 
 #include "calibrate/bundle_fit.hpp"
-#include "calibrate/calibrate_rig.hpp"
+#include "calibrate/fit_arguments.hpp"
+#include "calibrate/fit_priors.hpp"
 #include "calibrate/calibration_error.hpp"
 #include "calibrate/failure.hpp"
 #include "arrays/arrays.hpp"

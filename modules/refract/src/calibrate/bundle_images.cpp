@@ -7,7 +7,7 @@
 #include "calibrate/bundle_images.hpp"
 #include "arrays/arrays.hpp"
 #include "arrays/extrinsics.hpp"
-#include "calibrate/calibrate_rig.hpp"
+#include "calibrate/fit_arguments.hpp"
 #include <climits>
 #include <numeric>
 #include <tuple>

@@ -4,7 +4,7 @@
 
 /* Public functions of the joint fit for one camera: a rig of one. */
 
-#include "calibrate/calibrate_rig.hpp"
+#include "calibrate/fit_arguments.hpp"
 
 namespace cv { namespace refract {
 

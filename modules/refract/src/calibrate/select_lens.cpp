@@ -13,7 +13,7 @@ percent allow (as pruning by Breiman et al., Classification and Regression Trees
 #include "adjust/held_out.hpp"
 #include "adjust/minimize.hpp"
 #include "arrays/arrays.hpp"
-#include "calibrate/calibrate_rig.hpp"
+#include "calibrate/fit_arguments.hpp"
 #include "calibrate/failure.hpp"
 #include "calibrate/near_task.hpp"
 #include "calibrate/rig_fit.hpp"

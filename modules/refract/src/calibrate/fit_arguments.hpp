@@ -2,15 +2,15 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_REFRACT_CALIBRATE_RIG_HPP
-#define OPENCV_REFRACT_CALIBRATE_RIG_HPP
+#ifndef OPENCV_REFRACT_FIT_ARGUMENTS_HPP
+#define OPENCV_REFRACT_FIT_ARGUMENTS_HPP
 
 #include "arrays/extrinsics.hpp"
 #include "calibrate/pair_check.hpp"
 
 namespace cv { namespace refract {
 
-// What the public calibrators check alike.
+// Arguments that several public calibrators have: checks, and what is read of them.
 
 const int FIX_FLAGS = GLASS_FIX_FOCAL_LENGTH | GLASS_FIX_PRINCIPAL_POINT | GLASS_FIX_K1 | GLASS_FIX_K2 | GLASS_FIX_K3 |
                       GLASS_FIX_K4 | GLASS_FIX_K5 | GLASS_FIX_K6 | GLASS_FIX_TANGENT_DIST | GLASS_FIX_S1_S2_S3_S4 |
@@ -39,8 +39,10 @@ RigViews readRigViews(InputArrayOfArrays objectPoints, const std::vector<std::ve
                       const std::vector<std::vector<Mat> >& imagePointsRefracted, int cameras,
                       HalfPixels halves = HalfPixels::NOT_SEEN);
 
-//! LxL, PxP or (P+6)x(P+6) of each camera; noArray(): none.
-std::vector<CameraPrior> readCameraPriors(InputArrayOfArrays covariances, const std::vector<Camera>& cameras);
+//! Covariances of what was read, as imagePointsDirect and imagePointsRefracted have it; nothing if there are none.
+void addPixelCovariances(const std::vector<std::vector<Mat> >& direct, const std::vector<std::vector<Mat> >& refracted,
+                         RigViews& views);
+
 //! Whether R and T of some camera are estimated.
 bool areExtrinsicsFree(int flags, const Rig& rig, const std::vector<CameraPrior>& priors);
 
@@ -52,18 +54,8 @@ void setOwners(Rig& rig, const std::vector<int>& windowOfCamera);
 
 std::vector<Pose> readExtrinsicPoses(InputArrayOfArrays Rs, InputArrayOfArrays Ts, int cameras);
 void writeExtrinsicPoses(const Rig& rig, InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts);
-//! Of vectors in one of the forms that poses may have.
-int countVectors(InputArrayOfArrays a, const char* name);
-//! What is not finite is not found.
-std::vector<Pose> readPoses(InputArrayOfArrays rvecs, InputArrayOfArrays tvecs, int count);
-//! Adds that three coordinates are exact, from the first on. distance: the translation's length.
-void holdExactly(int first, double distance, PosePrior& prior);
-//! Throws where something is known of a coordinate that is not finite.
-void checkKnown(const Pose& pose, int view, const PosePrior& prior);
-//! Poses that are known: exactly, or with a covariance, in part or not at all.
-std::vector<PosePrior> readPosePriors(InputArrayOfArrays covariances, const std::vector<Pose>& poses);
 void writeMasks(const std::vector<Mat>& masks, OutputArrayOfArrays out);
 
 }} // namespace
 
-#endif // OPENCV_REFRACT_CALIBRATE_RIG_HPP
+#endif // OPENCV_REFRACT_FIT_ARGUMENTS_HPP
