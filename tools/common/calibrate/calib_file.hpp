@@ -4,12 +4,12 @@
 #ifndef REFRACT_TOOLS_CALIB_FILE_HPP
 #define REFRACT_TOOLS_CALIB_FILE_HPP
 
+#include "calibrate/device_label.hpp"
 #include "calibrate/provenance.hpp"
 #include "calibrate/rigid_transform.hpp"
 #include "console/images.hpp"
 #include <opencv2/refract.hpp>
 #include <string>
-#include <utility>
 #include <vector>
 
 /* calib.yml: one camera at top level; two under `camera1`, `camera2` with `R`, `T` beside them; more: `camera3` with `R3`, `T3`
@@ -50,13 +50,6 @@ struct CameraCalibration
     double rms = -1.;                   //!< px; negative where unknown
     bool windowGiven = false;           //!< the file has a glass_window, be it one without layers
     double normalLength = 1.;           //!< as the file has it; the camera's own is 1
-};
-
-//! Names and notes of the calibrated device.
-struct Label
-{
-    std::string serial;                                         //!< of the window; may be empty
-    std::vector<std::pair<std::string, std::string>> notes;     //!< key and free text
 };
 
 struct Calibration
@@ -124,9 +117,6 @@ void writeCalibration(const std::string& filename, const Calibration& calibratio
 /** The time that outputs carry, ISO 8601 UTC: that of SOURCE_DATE_EPOCH, if set, else of the newest input, so that the same
 input gives the same bytes. */
 std::string timeOfFiles(const std::vector<std::string>& inputs);
-
-//! "key=text" -> a note; the key becomes a name in YAML and JSON.
-std::pair<std::string, std::string> parseNote(const std::string& text);
 
 } // namespace tools
 
