@@ -30,12 +30,11 @@ too, as its own light bends with the medium.
 Exit code: 0 done; 1 could not do it: no line, too few boards, lines that do not determine a sheet; 2 done, but the limit --max-rms is not
 met, or the boards contradict the sheet.)";
 
-#include "laser/scan_line.hpp"
+#include "laser/laser_output.hpp"
 #include "laser/sheet_fit.hpp"
 #include "calibrate/conditions.hpp"
 #include "calibrate/units.hpp"
 #include "console/cli.hpp"
-#include "console/csv.hpp"
 #include "console/file_output.hpp"
 #include "console/outputs.hpp"
 #include "console/progress.hpp"
@@ -50,7 +49,6 @@ met, or the boards contradict the sheet.)";
 #include <iostream>
 #include <limits>
 #include <map>
-#include <sstream>
 
 using namespace cv::refract;
 using namespace tools;
@@ -190,30 +188,6 @@ std::vector<RidgePoint> ridgesOf(const BoardImage& board, const LineOnBoard& lin
     return ridges;
 }
 
-//! A unit after a number, with its blank; nothing where calib.yml has none.
-std::string after(const std::string& unit) { return unit.empty() ? "" : " " + unit; }
-
-//! Bent lines on flat boards: the sheet is no plane.
-std::string bendNotice(const SheetFit& fit, const std::string& unit)
-{
-    const double SURE = 4.;
-    double sum = 0., weight = 0., largest = 0.;
-    for (const LineOnBoard& line : fit.lines)
-    {
-        sum += line.bend/(line.bendSigma*line.bendSigma);
-        weight += 1./(line.bendSigma*line.bendSigma);
-        largest = std::max(largest, std::abs(line.bend));
-    }
-    if (!(std::abs(sum) > SURE*std::sqrt(weight)))
-        return "";
-    const char* const why = isPlane(fit.sheet)
-        ? "the sheet is not quite a plane (refracted at a window that it does not cross straight: describe that by --emitter), or the "
-          "boards are not flat"
-        : "it is not the sheet of the emitter that --emitter describes, or the boards are not flat";
-    return format("the lines on the boards are bent off the sheet, by %.2g%s on average and at most %.2g: %s", std::abs(sum/weight),
-                  after(unit).c_str(), largest, why);
-}
-
 //! What the images say against what was given of the emitter.
 void warnOfEmitter(const Options& o, const SheetFit& fit, const Command& command)
 {
@@ -224,30 +198,6 @@ void warnOfEmitter(const Options& o, const SheetFit& fit, const Command& command
     if (fit.planeExcess < -BETTER)
         command.warn(format("a plane explains the lines better than the sheet of '%s' (chi-square smaller by %.0f): check its window",
                             o.emitter.c_str(), -fit.planeExcess));
-}
-
-void printSheet(const SheetFit& fit, const std::vector<BoardImage>& boards, const Sheet& sheet)
-{
-    const std::string unit = after(sheet.unit);
-    const cv::Mat& C = sheet.covariance;
-    const double tilt = std::sqrt(C.at<double>(0, 0) + C.at<double>(1, 1) + C.at<double>(2, 2))*180/CV_PI;
-    double rms = 0.;
-    for (const LineOnBoard& line : fit.lines)
-        rms += line.rmsPx*line.rmsPx/fit.lines.size();
-    std::cout << format("Sheet of light: %.6f x %+.6f y %+.6f z = %.4f%s (camera 1)\n", sheet.plane[0], sheet.plane[1], sheet.plane[2],
-                        sheet.plane[3], unit.c_str());
-    if (isPlane(sheet))
-        std::cout << format("  +- %.3f deg, ", tilt);
-    else
-        std::cout << "  is the nearest plane to the emitter's, which is refracted at its window;\n"
-                  << format("  for a plane, chi-square is larger by %.1f\n", fit.planeExcess)
-                  << format("  +- %.3g%s (RMS where the lines are), ", fit.sheetStd, unit.c_str());
-    std::cout << format("at z %.4g to %.4g%s; %zu of %zu boards\n", sheet.depth[0], sheet.depth[1], unit.c_str(), fit.lines.size(),
-                        boards.size())
-              << format("  lines: %.3f px off straight (RMS), profile %.1f px wide (standard deviation)\n", std::sqrt(rms), sheet.scale)
-              << format("  boards' poses: errors %.1f times those of the corners' noise\n", fit.poseNoise)
-              << format("Each board held out: %.3f%s from the sheet of the others (RMS),\n  %.2f times what the +- says\n",
-                        fit.heldOutRms(), unit.c_str(), fit.heldOutRatio());
 }
 
 int calibrateSheet(const Options& o, const Calibration& calibration, const Command& command)
@@ -298,42 +248,16 @@ int calibrateSheet(const Options& o, const Calibration& calibration, const Comma
     const bool overLimit = o.maxRms > 0. && !(fit.heldOutRms() <= o.maxRms), contradicted = fit.heldOutRatio() > CONTRADICTED;
     if (overLimit)
         command.warn(format("limit not met: held-out boards are %.3g%s from the sheet, more than --max-rms=%g", fit.heldOutRms(),
-                            after(sheet.unit).c_str(), o.maxRms));
+                            unitAfter(sheet.unit).c_str(), o.maxRms));
     if (contradicted)
         command.warn(format("held-out boards are %.1f times as far from the sheet as the +- says: some boards moved, are not flat, or "
                             "lens, window or sheet are not those of the calibration", fit.heldOutRatio()));
     return overLimit || contradicted ? LIMIT_NOT_MET : DONE;
 }
 
-//! The points of one image.
-struct Scan
-{
-    std::string name;
-    ScanLine line;
-    Measurement measured;
-};
-
 cv::Vec2d depthOf(const Options& o)
 {
     return o.depth.empty() ? cv::Vec2d(0., std::numeric_limits<double>::infinity()) : parseDepthRange(o.depth, "--depth");
-}
-
-std::string csvOf(const std::vector<Scan>& scans)
-{
-    std::ostringstream csv;
-    csv.precision(12);
-    csv << "image,id,u1,v1,x,y,z,sx,sy,sz,status\n";
-    for (const Scan& scan : scans)
-        for (size_t i = 0; i < scan.line.points.size(); i++)
-        {
-            const Measurement& m = scan.measured;
-            csv << cellOf(scan.name) << ',' << i;
-            for (double number : {m.pixels[0][i].x, m.pixels[0][i].y, m.points[i].x, m.points[i].y, m.points[i].z, m.sigma[i][0],
-                                  m.sigma[i][1], m.sigma[i][2]})
-                std::isnan(number) ? csv << ",nan" : csv << ',' << number;
-            csv << ',' << (int)m.status[i] << '\n';
-        }
-    return csv.str();
 }
 
 void addToCloud(const Scan& scan, const cv::Mat& image, Cloud& cloud)
@@ -355,15 +279,14 @@ void addToCloud(const Scan& scan, const cv::Mat& image, Cloud& cloud)
 std::string profileOf(const std::vector<Scan>& scans, const std::string& unit)
 {
     Plot plot(900, 400);
-    std::vector<std::vector<double>> rows;
-    const double gap = std::numeric_limits<double>::quiet_NaN();
+    std::vector<std::vector<cv::Point2d>> profiles;
     for (const Scan& scan : scans)
     {
+        profiles.emplace_back();
         for (const cv::Point3d& X : scan.measured.points)
-            rows.push_back({X.x, X.z});
-        rows.push_back({gap, gap});
+            profiles.back().emplace_back(X.x, X.z);
     }
-    plot.data("profile", rows);
+    plot.paths("profile", profiles);
     plot << "set grid\nset yrange [] reverse\nset xlabel 'x, " << unit << "'\nset ylabel 'z, " << unit << "'\n"
          << "plot $profile using 1:2 with points pt 7 ps 0.25 notitle\n";
     return plot.svg();
@@ -416,7 +339,7 @@ int measureWithSheet(const Options& o, const Calibration& calibration, const Com
         writeText(o.profile, profileOf(scans, calibration.unit));
     if (!command.quiet())
         std::cout << format("%d points in %zu image%s, +- %.3g%s (RMS of one standard deviation, 3-D)\n", points, paths.size(),
-                            paths.size() == 1 ? "" : "s", std::sqrt(sigma/points), after(calibration.unit).c_str())
+                            paths.size() == 1 ? "" : "s", std::sqrt(sigma/points), unitAfter(calibration.unit).c_str())
                   << (mixed ? format("%d points left out, where the line ends, jumps or gets much darker\n", mixed) : std::string())
                   << (ambiguous ? format("%d columns left out, where two lines are about as strong\n", ambiguous) : std::string());
     return DONE;

@@ -117,18 +117,6 @@ private:
     Vec3d across_;
 };
 
-void draw(Plot& plot, const std::string& name, const std::vector<Path>& paths)
-{
-    std::vector<std::vector<double>> rows;
-    for (const Path& path : paths)
-    {
-        for (const Point2d& p : path)
-            rows.push_back({p.x, p.y});
-        rows.push_back({NONE, NONE});       // gnuplot lifts the pen
-    }
-    plot.data(name, rows);
-}
-
 } // namespace
 
 Figure drawDome(const RigCalibration& c, int camera)
@@ -140,10 +128,10 @@ Figure drawDome(const RigCalibration& c, int camera)
     Path glass = section.outer(), back = section.inner();
     glass.insert(glass.end(), back.rbegin(), back.rend());
     Plot plot(520, 460);
-    draw(plot, "rays", section.rays());
-    draw(plot, "glass", {glass});
-    draw(plot, "ellipse", {section.ellipse(widened)});
-    draw(plot, "centre", {section.centre()});
+    plot.paths("rays", section.rays());
+    plot.paths("glass", {glass});
+    plot.paths("ellipse", {section.ellipse(widened)});
+    plot.paths("centre", {section.centre()});
     plot << "set size ratio -1\nset xlabel " << Plot::quoted("z, away from the camera, " + c.unit) << "\nset ylabel "
          << Plot::quoted("towards the centre, " + c.unit) << "\nset key outside top center horizontal maxrows 1 samplen 1.5\n"
          << "plot $glass with filledcurves closed fillcolor rgb '#0284c7' fillstyle solid 0.3 border rgb '#0284c7' title '"

@@ -184,22 +184,22 @@ public:
 
     void draw(Plot& plot, const std::string& name, const std::vector<Line>& lines)
     {
-        std::vector<std::vector<double>> rows;
+        std::vector<std::vector<Point2d>> paths;
         for (const Line& line : lines)
         {
+            paths.emplace_back();
             for (const Vec3d& X : line)
-                rows.push_back(at(X));
-            rows.push_back({NONE, NONE});           // gnuplot lifts the pen
+                paths.back().push_back(at(X));
         }
-        plot.data(name, rows);
+        plot.paths(name, paths);
     }
 
-    std::vector<double> at(const Vec3d& X)
+    Point2d at(const Vec3d& X)
     {
         const Point2d p = project_(X);
         low_ = Point2d(std::min(low_.x, p.x), std::min(low_.y, p.y));
         high_ = Point2d(std::max(high_.x, p.x), std::max(high_.y, p.y));
-        return {p.x, p.y};
+        return p;
     }
 
     Point2d low() const { return low_; }
@@ -242,13 +242,15 @@ Figure drawRig(const RigCalibration& c, double azimuthDeg)
         axes.push_back(drawing.axis(k));
         if (c.fit.rig.ownsWindow(k))
             windows.push_back(drawing.window(k));
-        std::vector<double> name = paper.at(drawing.centre(k));
-        name.push_back(k + 1);
-        names.push_back(name);
+        const Point2d name = paper.at(drawing.centre(k));
+        names.push_back({name.x, name.y, k + 1.});
     }
     const size_t MOST = 2000, step = drawing.points().size()/MOST + 1;
     for (size_t i = 0; i < drawing.points().size(); i += step)
-        points.push_back(paper.at(drawing.points()[i]));
+    {
+        const Point2d point = paper.at(drawing.points()[i]);
+        points.push_back({point.x, point.y});
+    }
     plot.data("points", points);
     plot.data("names", names);
     paper.draw(plot, "cameras", cameras);

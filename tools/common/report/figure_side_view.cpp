@@ -158,18 +158,6 @@ private:
     double farthest_;
 };
 
-void draw(Plot& plot, const std::string& name, const std::vector<Path>& paths)
-{
-    std::vector<std::vector<double>> rows;
-    for (const Path& path : paths)
-    {
-        for (const Point2d& p : path)
-            rows.push_back({p.x, p.y});
-        rows.push_back({NONE, NONE});       // gnuplot lifts the pen
-    }
-    plot.data(name, rows);
-}
-
 //! The cone of the normal: from the centre, +- one standard deviation widened by a factor.
 Path cone(double angle, double halfWidth, double length)
 {
@@ -202,14 +190,14 @@ Figure drawSideView(const RigCalibration& calibration, int camera, int axis)
     const double length = std::max(0.4*view.farthest(), 1.3*view.depth());
 
     Plot plot(640, 420);
-    draw(plot, "rays", rays);
-    draw(plot, "boards", view.boards());
+    plot.paths("rays", rays);
+    plot.paths("boards", view.boards());
     // A surface without thickness (bare water) is a line.
-    draw(plot, "glass", {view.section(half)});
+    plot.paths("glass", {view.section(half)});
     if (hasNormal)
     {
-        draw(plot, "cone", {cone(angle, widened*std, length)});
-        draw(plot, "normal", {Path{Point2d(0, 0), Point2d(length*std::cos(angle), length*std::sin(angle))}});
+        plot.paths("cone", {cone(angle, widened*std, length)});
+        plot.paths("normal", {Path{Point2d(0, 0), Point2d(length*std::cos(angle), length*std::sin(angle))}});
     }
     plot << "set size ratio -1\nset xlabel " << Plot::quoted("z, away from the camera, " + calibration.unit) << "\nset ylabel "
          << Plot::quoted((axis == 0 ? "x, to the right, " : "y, downwards, ") + calibration.unit) << "\nset yrange [*:*] " << "reverse\n"

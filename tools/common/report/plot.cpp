@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <limits>
 #include <unistd.h>
 
 namespace tools {
@@ -69,6 +70,19 @@ void Plot::data(const std::string& name, const std::vector<std::vector<double>>&
         script_ << '\n';
     }
     script_ << "EOD\n";
+}
+
+void Plot::paths(const std::string& name, const std::vector<std::vector<cv::Point2d>>& paths)
+{
+    const double gap = std::numeric_limits<double>::quiet_NaN();        // gnuplot lifts the pen
+    std::vector<std::vector<double>> rows;
+    for (const std::vector<cv::Point2d>& path : paths)
+    {
+        for (const cv::Point2d& p : path)
+            rows.push_back({p.x, p.y});
+        rows.push_back({gap, gap});
+    }
+    data(name, rows);
 }
 
 Plot::Plot(cv::Size image) : Plot(600, 70 + 460*image.height/image.width)

@@ -36,6 +36,9 @@ public:
         return *this;
     }
 
+    //! Paths on the paper, x and y, with a gap after each.
+    void paths(const std::string& name, const std::vector<std::vector<cv::Point2d>>& paths);
+
     //! Runs gnuplot; throws Failure with its message if it fails.
     std::string svg() const;
 
