@@ -198,14 +198,8 @@ int refractiveSolvePnPGeneric(InputArray objectPoints, InputArray imagePoints, c
 {
     CV_INSTRUMENT_REGION();
 
-    const Camera& seenBy = cameraOf(camera);
-    ImagePoints points = readPoints(objectPoints, imagePoints, useExtrinsicGuess);
-    const NearOrigin origin = moveNear(points);
-    const Pose guess = useExtrinsicGuess ? origin.toNear(readPose(rvec, tvec)) : Pose();
-    const std::vector<PoseMinimum> minima = findMinima(seenBy, points, guess);
-    writePoses(minima, origin, rvecs, tvecs);
-    writeErrors(seenBy, points, minima, reprojectionError);
-    return (int)minima.size();
+    return refractiveSolvePnPGeneric(objectPoints, imagePoints, camera, rvecs, tvecs, useExtrinsicGuess, rvec, tvec,
+                                     reprojectionError, noArray());
 }
 
 int refractiveSolvePnPGeneric(InputArray objectPoints, InputArray imagePoints, InputArray cameraMatrix,
