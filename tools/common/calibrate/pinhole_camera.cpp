@@ -164,7 +164,7 @@ const std::map<std::string, PinholeLens>& pinholeLenses()
 }
 
 Ptr<RefractiveCamera> calibratePinhole(const std::vector<TargetView>& targetViews, Size imageSize, int coefficients, int fixed,
-                                       double& rms)
+                                       double& rms, int solver)
 {
     const PinholeViews views = seenViews(targetViews);
     if (coefficients == FISHEYE_LENS)
@@ -173,7 +173,7 @@ Ptr<RefractiveCamera> calibratePinhole(const std::vector<TargetView>& targetView
         camera->setImageSize(imageSize);
         return camera;
     }
-    const int flags = calibrateCameraFlags(coefficients, fixed);
+    const int flags = calibrateCameraFlags(coefficients, fixed) | solver;
     const TermCriteria criteria(TermCriteria::COUNT + TermCriteria::EPS, 200, 1e-13);
     Mat cameraMatrix, distCoeffs, rvecs, tvecs;
     if (views.onBoards)

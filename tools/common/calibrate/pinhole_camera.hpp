@@ -34,9 +34,11 @@ struct TargetView
 /** cv::calibrateCamera on the seen points of all views that are not empty; where a target is not flat, from several focal
 lengths. With FISHEYE_LENS cv::fisheye::calibrate, on flat targets, from several focal lengths too. Throws cv::Exception where
 it finds nothing.
-@param fixed GLASS_FIX_...: k1 to k4, p1 and p2 that stay 0 */
+@param fixed GLASS_FIX_...: k1 to k4, p1 and p2 that stay 0
+@param solver of cv::calibrateCamera's steps, a flag of it; 0: by singular values, which takes most of its time and bears what images
+hardly determine */
 cv::Ptr<cv::refract::RefractiveCamera> calibratePinhole(const std::vector<TargetView>& views, cv::Size imageSize,
-                                                     int coefficients, int fixed, double& rms);
+                                                     int coefficients, int fixed, double& rms, int solver = 0);
 
 //! Whether there are enough images to find a lens from: three of flat targets, one of a target with depth.
 bool determineLens(const std::vector<TargetView>& views);

@@ -73,7 +73,8 @@ double placeBeside(const RigData& data, const std::vector<int>& views, const Cal
     const auto lens = [&](int c) { return rig.cameras[c].camera; };
     Mat K1 = lens(camera1)->cameraMatrix(), D1 = coefficientsLeft(*lens(camera1)), K2 = lens(camera2)->cameraMatrix(),
         D2 = coefficientsLeft(*lens(camera2)), E, F;
-    return stereoCalibrate(object, image1, image2, K1, D1, K2, D2, data.imageSize[camera1], R, T, E, F, CALIB_FIX_INTRINSIC);
+    return stereoCalibrate(object, image1, image2, K1, D1, K2, D2, data.imageSize[camera1], R, T, E, F,
+                           CALIB_FIX_INTRINSIC | CALIB_USE_QR);
 }
 
 } // namespace
@@ -102,7 +103,7 @@ CameraCalibration calibratePinholeThroughGlass(const RigData& data, int camera, 
     if (targetViews.size() < MIN_VIEWS && !solid)
         throw Failure("--pinhole-out needs at least 3 images through the window for each camera");
     CameraCalibration result;
-    result.camera = calibratePinhole(targetViews, data.imageSize[camera], coefficients, 0, result.rms);
+    result.camera = calibratePinhole(targetViews, data.imageSize[camera], coefficients, 0, result.rms, CALIB_USE_QR);
     return result;
 }
 

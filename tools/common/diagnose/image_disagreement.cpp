@@ -59,7 +59,7 @@ Matx33d roughLens(const RigData& data, int camera, bool glass)
         Mat K = initCameraMatrix2D(objects, images, data.imageSize[camera], 1.), distortion;
         calibrateCamera(objects, images, data.imageSize[camera], K, distortion, noArray(), noArray(),
                         CALIB_USE_INTRINSIC_GUESS | CALIB_FIX_PRINCIPAL_POINT | CALIB_FIX_ASPECT_RATIO | CALIB_ZERO_TANGENT_DIST
-                        | CALIB_FIX_K1 | CALIB_FIX_K2 | CALIB_FIX_K3, TermCriteria(TermCriteria::COUNT, LENS_ITERATIONS, 0.));
+                        | CALIB_FIX_K1 | CALIB_FIX_K2 | CALIB_FIX_K3 | CALIB_USE_QR, TermCriteria(TermCriteria::COUNT, LENS_ITERATIONS, 0.));
         return K;
     }
     catch (const cv::Exception&)        // degenerate images
@@ -78,7 +78,7 @@ Matx33d throughWindow(const Matx33d& direct, const Matx33d& glass, const RigOpti
     return Matx33d(longer*direct(0, 0), 0, direct(0, 2), 0, longer*direct(1, 1), direct(1, 2), 0, 0, 1);
 }
 
-bool rigidPose(const View& view, const std::vector<Point2d>& pixels, const Matx33d& K, RigidTransform& pose)
+bool solveBoard(const View& view, const std::vector<Point2d>& pixels, const Matx33d& K, RigidTransform& pose)
 {
     if (isSolid(view.objectPoints))
         return false;
@@ -98,6 +98,31 @@ bool rigidPose(const View& view, const std::vector<Point2d>& pixels, const Matx3
     return true;
 }
 
+template<typename T> void addBytes(const T* from, size_t count, std::string& to)
+{
+    to.append(reinterpret_cast<const char*>(from), count*sizeof(T));
+}
+
+} // namespace
+
+bool BoardPoses::find(const View& view, const std::vector<Point2d>& pixels, const Matx33d& K, RigidTransform& pose)
+{
+    if (pixels.empty())
+        return false;
+    std::string key;
+    addBytes(K.val, 9, key);
+    addBytes(pixels.data(), pixels.size(), key);
+    addBytes(view.objectPoints.data(), view.objectPoints.size(), key);
+    const auto entry = known_.emplace(key, Known());
+    Known& known = entry.first->second;
+    if (entry.second)
+        known.isFound = solveBoard(view, pixels, K, known.pose);
+    pose = known.pose;
+    return known.isFound;
+}
+
+namespace {
+
 //! A board that two cameras saw at one moment.
 struct Both
 {
@@ -106,7 +131,7 @@ struct Both
 };
 
 //! @param K1, K2 lenses of camera 1 and of this one
-std::vector<Both> boardsOf(const RigData& data, int camera, bool glass, const Matx33d& K1, const Matx33d& K2)
+std::vector<Both> boardsOf(const RigData& data, int camera, bool glass, const Matx33d& K1, const Matx33d& K2, BoardPoses& poses)
 {
     std::vector<Both> boards;
     if (!(K1(0, 0) > 0.) || !(K2(0, 0) > 0.))
@@ -115,7 +140,7 @@ std::vector<Both> boardsOf(const RigData& data, int camera, bool glass, const Ma
     {
         Both b{{}, {}, &view};
         const PerCamera<std::vector<Point2d>>& images = glass ? view.glass : view.direct;
-        if (rigidPose(view, images[0], K1, b.one) && rigidPose(view, images[camera], K2, b.other))
+        if (poses.find(view, images[camera], K2, b.other) && poses.find(view, images[0], K1, b.one))
             boards.push_back(b);
     }
     return boards;
@@ -184,7 +209,7 @@ double Disagreements::camerasApart() const
     return worst;
 }
 
-Disagreements disagreementsOf(const RigData& data, const RigOptions& options, const RoughLenses& lenses)
+Disagreements disagreementsOf(const RigData& data, const RigOptions& options, const RoughLenses& lenses, BoardPoses& poses)
 {
     Disagreements all;
     PerCamera<Matx33d> through;
@@ -196,8 +221,8 @@ Disagreements disagreementsOf(const RigData& data, const RigOptions& options, co
     }
     for (int c = 1; c < data.cameraCount; c++)
     {
-        const std::vector<Both> direct = boardsOf(data, c, false, lenses.direct[0], lenses.direct[c]),
-                                glass = boardsOf(data, c, true, through[0], through[c]);
+        const std::vector<Both> direct = boardsOf(data, c, false, lenses.direct[0], lenses.direct[c], poses),
+                                glass = boardsOf(data, c, true, through[0], through[c], poses);
         all.direct.push_back(apart(direct, direct, lenses.direct[c](0, 0)));
         all.glass.push_back(apart(glass, glass, through[c](0, 0)));
         all.states.push_back(apart(glass, direct, through[c](0, 0)));
@@ -233,7 +258,8 @@ double pairsFromOneMap(const RigData& data)
 
 double camerasApart(const RigData& data, const RigOptions& options)
 {
-    return disagreementsOf(data, options, roughLensesOf(data)).camerasApart();
+    BoardPoses poses;
+    return disagreementsOf(data, options, roughLensesOf(data), poses).camerasApart();
 }
 
 } // namespace tools

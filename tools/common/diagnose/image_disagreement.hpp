@@ -5,6 +5,9 @@
 #define REFRACT_TOOLS_IMAGE_DISAGREEMENT_HPP
 
 #include "diagnose/calibration_input.hpp"
+#include "calibrate/rigid_transform.hpp"
+#include <string>
+#include <unordered_map>
 
 /* How far images contradict each other, px, whatever the window is: told without it, by pinholes, in milliseconds. */
 namespace tools {
@@ -35,7 +38,23 @@ struct Disagreements
     double camerasApart() const;
 };
 
-Disagreements disagreementsOf(const RigData& data, const RigOptions& options, const RoughLenses& lenses);
+//! Poses of boards before pinholes, found once: of hundreds of exchanges each leaves nearly all images as they were.
+class BoardPoses
+{
+public:
+    //! False: there is none.
+    bool find(const View& view, const std::vector<cv::Point2d>& pixels, const cv::Matx33d& K, RigidTransform& pose);
+
+private:
+    struct Known
+    {
+        RigidTransform pose;
+        bool isFound = false;
+    };
+    std::unordered_map<std::string, Known> known_;      // by the bytes of pinhole, pixels and board
+};
+
+Disagreements disagreementsOf(const RigData& data, const RigOptions& options, const RoughLenses& lenses, BoardPoses& poses);
 
 //! How far pairs are from one map of the direct image on that through the window, of the worst camera. A window is such a map, nearly.
 double pairsFromOneMap(const RigData& data);

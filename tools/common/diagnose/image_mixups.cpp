@@ -209,13 +209,14 @@ MixUps findMixUps(const CalibrationInput& input)
 {
     const RigData& data = input.data;
     const RoughLenses lenses = roughLensesOf(data);
-    const Disagreements before = disagreementsOf(data, input.options, lenses);
+    BoardPoses poses;
+    const Disagreements before = disagreementsOf(data, input.options, lenses, poses);
     if (!(before.largest() > WINDOWS_PX))
         return {};
     std::vector<Candidate> candidates;
     double least = NO_FIT;
     const auto attempt = [&](const RigData& changed, const RoughLenses& now, const std::string& sentence) {
-        const Disagreements after = disagreementsOf(changed, input.options, now);
+        const Disagreements after = disagreementsOf(changed, input.options, now, poses);
         if (!isNowhereWorse(before, after))
             return;
         const double left = product(after);

@@ -74,6 +74,32 @@ RelaxedFit::RelaxedFit(const RigData& data, const Fit& fit, bool posesKnown, dou
     start_.before = toVector(problem_.rig);
 }
 
+/** byNumbers times changes. The pixels of an image depend on its own camera's numbers alone, a few of those of a rig of many
+cameras: only these columns are multiplied. */
+static MatrixXd productOfImages(const MatrixXd& byNumbers, const std::vector<ImageOfView>& images, const MatrixXd& changes)
+{
+    MatrixXd result(byNumbers.rows(), changes.cols());
+    Eigen::Index row = 0;
+    for (const ImageOfView& image : images)
+    {
+        const Eigen::Index n = 2*(Eigen::Index)image.points.size();
+        const auto own = byNumbers.middleRows(row, n);
+        std::vector<Eigen::Index> columns;
+        for (Eigen::Index i = 0; i < own.cols(); i++)
+            if (!own.col(i).isZero(0.))
+                columns.push_back(i);
+        MatrixXd some(n, columns.size()), theirs(columns.size(), changes.cols());
+        for (size_t i = 0; i < columns.size(); i++)
+        {
+            some.col(i) = own.col(columns[i]);
+            theirs.row(i) = changes.row(columns[i]);
+        }
+        result.middleRows(row, n) = product(some, theirs);
+        row += n;
+    }
+    return result;
+}
+
 //! @param changes of the numbers of direct images and of those through the windows
 RelaxedFit::Rows RelaxedFit::rowsOf(const Relaxed& at, size_t k, const std::vector<MatrixXd>& changes) const
 {
@@ -92,7 +118,7 @@ RelaxedFit::Rows RelaxedFit::rowsOf(const Relaxed& at, size_t k, const std::vect
         const ViewDerivatives view = differentiateView(glass ? at.glass : at.direct, observed.objectPoints, observed.rvec,
                                                        observed.tvec, images[glass]);
         const Eigen::Index n = view.predicted.size();
-        rows.byAll.middleRows(row, n) = product(view.byParameters, changes[glass]/noise_);
+        rows.byAll.middleRows(row, n) = productOfImages(view.byParameters, images[glass], changes[glass])/noise_;
         rows.byPose.middleRows(row, n) = view.byPose/noise_;
         rows.rest.segment(row, n) = (observed.pixels.segment(row, n) - view.predicted)/noise_;
         row += n;
