@@ -17,17 +17,22 @@ namespace {
 const int FEW_ITERATIONS = 30;          // where a wrong value is known to be, a fit within what is known of it may creep;
 const int FEW_ROBUST_ITERATIONS = 15;   // and where nothing fits, each of many
 
-void start(RigCalibration& c, bool robust, int maxIterations)
+//! @param only see PlainFit
+void start(RigCalibration& c, bool robust, int maxIterations, std::optional<RigModel>& only)
 {
     if (robust)
-        c.outliers = startWithoutOutliers(c.data, c.options, c.start, c.lensSources, maxIterations);
+        c.outliers = startWithoutOutliers(c.data, c.options, c.start, c.lensSources, maxIterations, only);
     else
+    {
         c.start = startModel(c.data, c.options, c.lensSources);
+        if (only)
+            c.start = placedAs(c.start, *only);
+    }
 }
 
-void fit(RigCalibration& c, const std::function<void()>& step, int maxIterations)
+void fit(RigCalibration& c, const std::function<void()>& step, int maxIterations, bool isPlaced)
 {
-    c.fit = fitAllImages(c.data, c.start, c.lensSources, c.options.flags, maxIterations);
+    c.fit = fitAllImages(c.data, c.start, c.lensSources, c.options.flags, maxIterations, isPlaced);
     c.residuals = residualsOf(c.data, c.fit);
     step();
     c.baselines = computeBaselines(c.data, c.start, c.lensSources);
@@ -64,22 +69,26 @@ void calibrateImages(RigCalibration& c, bool robust, const std::function<void()>
     if (!isSlowToStart(input))
     {
         const MixUps mixUps = findMixUps(input);
-        const bool lookedAtImages = requireNoMixUp(input, mixUps);
-        plain = fitPlainly(input);
+        std::optional<RigModel> only;
+        const bool lookedAtImages = requireNoMixUp(input, mixUps, only);
+        plain = fitPlainly(input, only);
         const bool suspicious = isSuspicious(input, plain);
         fitsPlainly = isSound(input, plain, suspicious);
         if (suspicious)
             requireNoCause(input, mixUps, plain, !lookedAtImages);
+        if (!fitsPlainly || plain.explained)
+            plain.only.reset();
     }
     const auto explained = [&](const auto& error, const std::string& reason) {
         return plain.explained ? reason + ": " + plain.explained->sentence : explainError(error, input); };
     try
     {
-        start(c, robust && !plain.explained, fitsPlainly ? MAX_ROBUST_ITERATIONS : FEW_ROBUST_ITERATIONS);
+        start(c, robust && !plain.explained, fitsPlainly ? MAX_ROBUST_ITERATIONS : FEW_ROBUST_ITERATIONS, plain.only);
         step();
         // No mistake that is known of explains it. If wrong points do not either, a fit would creep for minutes.
         mayFit = fitsPlainly || medianErrorOfFit(c.data, c.options) < largestSoundError(c.data);
-        fit(c, step, !mayFit ? 1 : plain.explained ? FEW_ITERATIONS : MAX_ITERATIONS);      // one tells what has no fit at all
+        const int iterations = !mayFit ? 1 : plain.explained ? FEW_ITERATIONS : MAX_ITERATIONS;        // one tells what has no fit at all
+        fit(c, step, iterations, plain.only.has_value());
     }
     catch (const CalibrationError& e)
     {

@@ -170,10 +170,34 @@ Fit fitImages(const RigData& data, const RigModel& start, const std::vector<int>
     return fit;
 }
 
-Fit fitAllImages(const RigData& data, const RigModel& start, const std::vector<LensSource>& lensSources, int& flags,
-                 int maxIterations)
+bool isOnlyMinimum(const RigData& data, const Fit& fit, int flags)
 {
-    const Fit held = fitImages(data, start, usefulViews(data, flags), flags, maxIterations);
+    const bool isSearched = data.cameraCount > 1 && !(flags & (GLASS_FREE_INTRINSICS | GLASS_USE_POSES))
+        && std::none_of(data.views.begin(), data.views.end(), [](const View& view) { return view.countDirect() > 0; });
+    return isSearched && countNonZero(fit.otherMinima == fit.otherMinima) == 0;     // NaN: there is none
+}
+
+RigModel placedAs(const RigModel& start, const RigModel& found)
+{
+    RigModel rig = start.clone();
+    rig.extrinsics = found.extrinsics;
+    for (size_t c = 0; c < rig.cameras.size(); c++)
+    {
+        GlassWindow window = rig.cameras[c]->window();
+        const GlassWindow there = found.cameras[c]->window();
+        window.normal = there.normal;
+        window.distance = there.distance;
+        window.center = there.center;
+        window.axis = there.axis;
+        rig.cameras[c]->setWindow(window);
+    }
+    return rig;
+}
+
+Fit fitAllImages(const RigData& data, const RigModel& start, const std::vector<LensSource>& lensSources, int& flags,
+                 int maxIterations, bool isPlaced)
+{
+    const Fit held = fitImages(data, start, usefulViews(data, flags), flags | (isPlaced ? FROM_EARLIER_FIT : 0), maxIterations);
     const bool fromImages = std::any_of(lensSources.begin(), lensSources.end(),
                                         [](const LensSource& s) { return s.kind != LensSource::FROM_FILE; });
     if (!fromImages || (flags & GLASS_FREE_INTRINSICS))

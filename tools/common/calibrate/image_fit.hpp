@@ -16,11 +16,19 @@ const int MAX_ITERATIONS = 1000, MAX_ROBUST_ITERATIONS = 100;     // the latter 
 Fit fitImages(const RigData& data, const RigModel& start, const std::vector<int>& views, int flags,
               int maxIterations = MAX_ITERATIONS);
 
+/** Whether the next fits of these images may start where this one ended, without a search: only images through windows tell where several
+cameras are, which takes seconds to search, and that search met no other plausible minimum. */
+bool isOnlyMinimum(const RigData& data, const Fit& fit, int flags);
+
+//! The initial values, with the cameras and the windows at the places where a fit has them.
+RigModel placedAs(const RigModel& start, const RigModel& found);
+
 /** One fit of all images: lenses that came from images are free in it, so that their uncertainty is in every +-; direct
 images are views too, each with its own pose. The windows are found first, with the lenses held.
-@param flags gets GLASS_FREE_INTRINSICS if so */
+@param flags gets GLASS_FREE_INTRINSICS if so
+@param isPlaced the initial values are placed as an earlier fit has them, and no other minimum is looked for */
 Fit fitAllImages(const RigData& data, const RigModel& start, const std::vector<LensSource>& lensSources, int& flags,
-                 int maxIterations = MAX_ITERATIONS);
+                 int maxIterations = MAX_ITERATIONS, bool isPlaced = false);
 
 } // namespace tools
 

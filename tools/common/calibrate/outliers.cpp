@@ -3,6 +3,7 @@
 
 #include "calibrate/outliers.hpp"
 #include "calibrate/image_fit.hpp"
+#include "calibrate/refit.hpp"
 
 using namespace cv;
 using namespace cv::refract;
@@ -142,6 +143,37 @@ Outliers rejectOutliers(RigData& data, const RigModel& start, int flags, const s
         return byHeld;
     data = freed;
     return byFreed;
+}
+
+//! Few points, and no whole image.
+static bool areSingle(const Outliers& outliers, const RigData& data)
+{
+    const double MOST = 0.01;           // of all
+    int all = 0, rejected = 0;
+    for (const View& view : data.views)
+        for (int c = 0; c < data.cameraCount; c++)
+            all += (int)std::count_if(view.glass[c].begin(), view.glass[c].end(), seen);
+    for (const Rejected& r : outliers.rejected)
+        rejected += r.points;
+    return outliers.fault.empty() && pointsOfRejectedImages(outliers) == 0 && rejected < MOST*all;
+}
+
+Outliers startWithoutOutliers(RigData& data, const RigOptions& options, RigModel& start, std::vector<LensSource>& lensSources,
+                              int maxIterations, std::optional<RigModel>& only)
+{
+    if (only)
+    {
+        RigData rest = data;
+        start = placedAs(startModel(data, options, lensSources), *only);
+        const Outliers outliers = rejectOutliers(rest, start, options.flags | FROM_EARLIER_FIT, maxIterations);
+        if (areSingle(outliers, data))
+        {
+            data = rest;
+            return outliers;
+        }
+        only.reset();
+    }
+    return startWithoutOutliers(data, options, start, lensSources, maxIterations);
 }
 
 Outliers startWithoutOutliers(RigData& data, const RigOptions& options, RigModel& start,

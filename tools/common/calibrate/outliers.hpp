@@ -6,6 +6,7 @@
 
 #include "calibrate/image_fit.hpp"
 #include "calibrate/starting_model.hpp"
+#include <optional>
 
 /* Outliers: hidden, smeared or wrongly detected points (dirty glass), and images whose target was moved. A robust fit of all data
 (GLASS_ROBUST) finds them. They are removed before the calibration itself. */
@@ -40,7 +41,11 @@ Outliers rejectOutliers(RigData& data, const RigModel& start, int flags, const s
 
 /** The same, where the initial values come from the data and contain their outliers. All data are tested again, from the initial values
 of the inliers, until the outliers do not change.
-@param start, lensSources result: as of startModel, from the inliers */
+@param start, lensSources result: as of startModel, from the inliers
+@param only where a fit of all the data met the only minimum: the initial values are placed there. Where more than single points are
+outliers they may have hidden another minimum: all is searched, and this is reset. */
+Outliers startWithoutOutliers(RigData& data, const RigOptions& options, RigModel& start, std::vector<LensSource>& lensSources,
+                              int maxIterations, std::optional<RigModel>& only);
 Outliers startWithoutOutliers(RigData& data, const RigOptions& options, RigModel& start,
                               std::vector<LensSource>& lensSources, int maxIterations = MAX_ROBUST_ITERATIONS);
 

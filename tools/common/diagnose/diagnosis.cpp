@@ -318,11 +318,11 @@ namespace {
 
 } // namespace
 
-bool requireNoMixUp(const CalibrationInput& input, const MixUps& mixUps)
+bool requireNoMixUp(const CalibrationInput& input, const MixUps& mixUps, std::optional<RigModel>& only)
 {
     if (mixUps.clear.empty() && !(pairsFromOneMap(input.data) > WINDOWS_PX) && !areUnrelated(mixUps))
         return false;
-    const double px = medianErrorOfFit(input.data, input.options);
+    const double px = medianErrorOfFit(input.data, input.options, only);
     if (px < largestSoundError(input.data))
         return false;
     const std::vector<std::string> reasons = imageMistakes(input, mixUps);

@@ -27,8 +27,9 @@ void requirePlausible(const RigData& data, const std::vector<Residual>& residual
 
 /** Throws Failure if images are mixed up: turned, mirrored, exchanged, of another moment. A fit to such images creeps, so that they are
 looked at before any that is not short.
+@param only gets the rig of the fit that it made, if that met the only minimum
 @return whether it has looked for all of them */
-bool requireNoMixUp(const CalibrationInput& input, const MixUps& mixUps);
+bool requireNoMixUp(const CalibrationInput& input, const MixUps& mixUps, std::optional<RigModel>& only);
 
 /** Whether a fit to all images leaves far more than the lens's own images do, or than one with another medium behind the windows: a
 mistake may explain it, be it below a pixel. */

@@ -49,7 +49,8 @@ double largestSoundError(const RigData& data)
     return limit;
 }
 
-double medianErrorOfFit(const RigData& data, const RigOptions& given, RigModel* result)
+//! Throws if there is no fit soon.
+static Fit soonFitted(const RigData& data, const RigOptions& given)
 {
     // What is known of a value does not matter to pixels; a wedge or a bow that is free makes each iteration slow.
     RigOptions options = given;
@@ -57,12 +58,32 @@ double medianErrorOfFit(const RigData& data, const RigOptions& given, RigModel* 
     options.window.wedge.clear();
     if (options.window.shape == WINDOW_BENT)
         options.window.shape = WINDOW_FLAT;
+    std::vector<LensSource> sources;
+    return fitImages(data, startModel(data, options, sources), allViews(data), options.flags, SOON);
+}
+
+double medianErrorOfFit(const RigData& data, const RigOptions& options, RigModel* result)
+{
     try
     {
-        std::vector<LensSource> sources;
-        const Fit fit = fitImages(data, startModel(data, options, sources), allViews(data), options.flags, SOON);
+        const Fit fit = soonFitted(data, options);
         if (result)
             *result = fit.rig;
+        return medianCornerError(data, residualsOf(data, fit));
+    }
+    catch (const std::exception&)
+    {
+        return NO_FIT;
+    }
+}
+
+double medianErrorOfFit(const RigData& data, const RigOptions& options, std::optional<RigModel>& only)
+{
+    try
+    {
+        const Fit fit = soonFitted(data, options);
+        if (isOnlyMinimum(data, fit, options.flags))
+            only = fit.rig;
         return medianCornerError(data, residualsOf(data, fit));
     }
     catch (const std::exception&)

@@ -7,6 +7,7 @@
 #include "calibrate/fit.hpp"
 #include "calibrate/starting_model.hpp"
 #include <limits>
+#include <optional>
 
 /* How well a calibration fits its images. If it does not, something in the input is wrong. */
 namespace tools {
@@ -25,6 +26,8 @@ double largestSoundError(const RigData& data);
 
 //! medianCornerError of a fit to all the data, NO_FIT if there is none soon. @param result gets the rig that was fitted
 double medianErrorOfFit(const RigData& data, const RigOptions& options, RigModel* result = nullptr);
+//! @param only gets the rig, if the search met no other minimum
+double medianErrorOfFit(const RigData& data, const RigOptions& options, std::optional<RigModel>& only);
 
 } // namespace tools
 

@@ -59,7 +59,8 @@ Matx33d roughLens(const RigData& data, int camera, bool glass)
         Mat K = initCameraMatrix2D(objects, images, data.imageSize[camera], 1.), distortion;
         calibrateCamera(objects, images, data.imageSize[camera], K, distortion, noArray(), noArray(),
                         CALIB_USE_INTRINSIC_GUESS | CALIB_FIX_PRINCIPAL_POINT | CALIB_FIX_ASPECT_RATIO | CALIB_ZERO_TANGENT_DIST
-                        | CALIB_FIX_K1 | CALIB_FIX_K2 | CALIB_FIX_K3 | CALIB_USE_QR, TermCriteria(TermCriteria::COUNT, LENS_ITERATIONS, 0.));
+                        | CALIB_FIX_K1 | CALIB_FIX_K2 | CALIB_FIX_K3 | CALIB_USE_QR,
+                        TermCriteria(TermCriteria::COUNT, LENS_ITERATIONS, 0.));
         return K;
     }
     catch (const cv::Exception&)        // degenerate images

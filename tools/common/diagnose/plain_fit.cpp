@@ -75,7 +75,7 @@ std::optional<Contradiction> causeOf(const RigData& data, const RigOptions& opti
 
 } // namespace
 
-PlainFit fitPlainly(const CalibrationInput& input)
+PlainFit fitPlainly(const CalibrationInput& input, const std::optional<RigModel>& found)
 {
     PlainFit plain;
     try
@@ -83,11 +83,15 @@ PlainFit fitPlainly(const CalibrationInput& input)
         std::vector<LensSource> sources;
         const RigOptions exact = exactly(input.options);
         RigOptions options = input.options;
-        const RigModel start = startModel(input.data, exact, sources);
+        RigModel start = startModel(input.data, exact, sources);
+        if (found)
+            start = placedAs(start, *found);
         try
         {
-            const Fit fit = fitAllImages(input.data, start, sources, options.flags, ITERATIONS);
+            const Fit fit = fitAllImages(input.data, start, sources, options.flags, ITERATIONS, found.has_value());
             plain.px = medianCornerError(input.data, residualsOf(input.data, fit));
+            if (isOnlyMinimum(input.data, fit, options.flags))
+                plain.only = fit.rig;
             plain.explained = causeOf(input.data, options, withKnown(input.data, fit, options), fit.sigma);
         }
         catch (const CalibrationError& e)

@@ -16,9 +16,11 @@ struct PlainFit
 {
     double px = NO_FIT;                         //!< medianCornerError
     std::optional<Contradiction> explained;     //!< a cause that explains all of its residuals
+    std::optional<RigModel> only;               //!< the rig, if the search met no other minimum: later fits start there
 };
 
-PlainFit fitPlainly(const CalibrationInput& input);
+//! @param found where an earlier fit, with what is given as exact, met the only minimum
+PlainFit fitPlainly(const CalibrationInput& input, const std::optional<RigModel>& found = std::nullopt);
 
 } // namespace tools
 
