@@ -74,7 +74,7 @@ double placeBeside(const RigData& data, const std::vector<int>& views, const Cal
     Mat K1 = lens(camera1)->cameraMatrix(), D1 = coefficientsLeft(*lens(camera1)), K2 = lens(camera2)->cameraMatrix(),
         D2 = coefficientsLeft(*lens(camera2)), E, F;
     return stereoCalibrate(object, image1, image2, K1, D1, K2, D2, data.imageSize[camera1], R, T, E, F,
-                           CALIB_FIX_INTRINSIC | CALIB_USE_QR);
+                           CALIB_FIX_INTRINSIC | CALIB_USE_LU);
 }
 
 } // namespace
@@ -103,7 +103,7 @@ CameraCalibration calibratePinholeThroughGlass(const RigData& data, int camera, 
     if (targetViews.size() < MIN_VIEWS && !solid)
         throw Failure("--pinhole-out needs at least 3 images through the window for each camera");
     CameraCalibration result;
-    result.camera = calibratePinhole(targetViews, data.imageSize[camera], coefficients, 0, result.rms, CALIB_USE_QR);
+    result.camera = calibratePinhole(targetViews, data.imageSize[camera], coefficients, 0, result.rms, CALIB_USE_LU);
     return result;
 }
 

@@ -59,7 +59,7 @@ Matx33d roughLens(const RigData& data, int camera, bool glass)
         Mat K = initCameraMatrix2D(objects, images, data.imageSize[camera], 1.), distortion;
         calibrateCamera(objects, images, data.imageSize[camera], K, distortion, noArray(), noArray(),
                         CALIB_USE_INTRINSIC_GUESS | CALIB_FIX_PRINCIPAL_POINT | CALIB_FIX_ASPECT_RATIO | CALIB_ZERO_TANGENT_DIST
-                        | CALIB_FIX_K1 | CALIB_FIX_K2 | CALIB_FIX_K3 | CALIB_USE_QR,
+                        | CALIB_FIX_K1 | CALIB_FIX_K2 | CALIB_FIX_K3 | CALIB_USE_LU,
                         TermCriteria(TermCriteria::COUNT, LENS_ITERATIONS, 0.));
         return K;
     }
@@ -147,25 +147,38 @@ std::vector<Both> boardsOf(const RigData& data, int camera, bool glass, const Ma
     return boards;
 }
 
+//! A point of a board in both cameras.
+struct PointInBoth
+{
+    Vec3d one, other;
+};
+
+std::vector<std::vector<PointInBoth>> pointsOf(const std::vector<Both>& boards)
+{
+    std::vector<std::vector<PointInBoth>> points(boards.size());
+    for (size_t i = 0; i < boards.size(); i++)
+        for (const Point3d& X : boards[i].view->objectPoints)
+            points[i].push_back({boards[i].one*Vec3d(X), boards[i].other*Vec3d(X)});
+    return points;
+}
+
 //! How far boards are from where the place of two cameras to each other has them, which one of some boards gives; px, of the middling one.
 double apart(const std::vector<Both>& boards, const std::vector<Both>& places, double focal)
 {
     if (boards.size() < 3 || places.size() < 3)
         return 0.;
+    const std::vector<std::vector<PointInBoth>> points = pointsOf(boards);
     double least = NO_FIT;
     for (const Both& from : places)
     {
         const RigidTransform place = fromTo(from.one, from.other);
         std::vector<double> errors;
-        for (const Both& b : boards)
+        for (const std::vector<PointInBoth>& board : points)
         {
             double sum = 0.;
-            for (const Point3d& X : b.view->objectPoints)
-            {
-                const Vec3d here = b.other*Vec3d(X);
-                sum += norm(place*(b.one*Vec3d(X)) - here)/std::abs(here[2]);
-            }
-            errors.push_back(focal*sum/b.view->objectPoints.size());
+            for (const PointInBoth& X : board)
+                sum += norm(place*X.one - X.other)/std::abs(X.other[2]);
+            errors.push_back(focal*sum/board.size());
         }
         least = std::min(least, median(errors));
     }
