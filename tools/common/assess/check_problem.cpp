@@ -18,24 +18,6 @@ const int ITERATIONS = 10, HALVINGS = 6;
 const double CONVERGED = 1e-3;          // of chi^2, which then is known to far less than 1
 const double NOWHERE = std::numeric_limits<double>::infinity();
 
-//! L of C = L L^T.
-MatrixXd rootOf(const MatrixXd& C)
-{
-    const double NOTHING = 1e-13;
-    const CorrelationSpectrum spectrum(C);
-    const int rank = spectrum.rank(NOTHING);
-    if (rank == 0)          // an exact calibration: one direction along which nothing moves, as Eigen wants a column
-        return MatrixXd::Zero(C.rows(), 1);
-    return spectrum.root(rank);
-}
-
-//! Of L, which has full column rank; its rows are of all sizes.
-MatrixXd leftInverseOf(const MatrixXd& L)
-{
-    const VectorXd inverse = L.rowwise().norm().unaryExpr([](double s) { return s > 0. ? 1./s : 0.; });
-    return pseudoInverse(inverse.asDiagonal()*L)*inverse.asDiagonal();
-}
-
 } // namespace
 
 //! One linearisation: residuals and derivatives, as they are and with the poses projected out.
@@ -75,8 +57,18 @@ CheckProblem::CheckProblem(const CheckInput& input, const std::vector<View>& vie
 
 CheckProblem::CheckProblem(const CheckInput& input, const std::vector<ViewObservations>& views, double sigma)
     : input_(input.rig.targetCovariance.empty() ? withTargetColumns(input, Mat()) : input), sigma_(sigma),
-      parameters_(parametersOf(input_.rig)), root_(rootOf(toEigen(input_.covariance))), views_(views)
+      parameters_(parametersOf(input_.rig)), views_(views)
 {
+    const double NOTHING = 1e-13;
+    const CorrelationSpectrum spectrum(toEigen(input_.covariance));
+    const int rank = spectrum.rank(NOTHING);
+    if (rank > 0)
+    {
+        root_ = spectrum.root(rank);
+        inverseRoot_ = spectrum.inverseRoot(rank);
+    }
+    else        // an exact calibration: one direction along which nothing moves, as Eigen wants a column
+        root_ = inverseRoot_ = MatrixXd::Zero(parameters_.size(), 1);
     for (const ViewObservations& view : views_)
         observations_ += (int)view.pixels.size() - view.unknowns();
 }
@@ -281,7 +273,7 @@ CheckProblem::Information CheckProblem::information(const std::vector<Change>& c
     result.score = precision*(transposeTimesVector(effect, r)
                               - timesVector(transposeTimes(effect, rows.byQ),
                                             ldlt.solve(transposeTimesVector(rows.byQ, r, precision))));
-    result.byParameters = transposeTimes(ldlt.solve(mixed), leftInverseOf(root_));     // B^T S^-1 A L = (H^-1 mixed)^T
+    result.byParameters = transposeTimes(ldlt.solve(mixed), inverseRoot_.transpose());    // B^T S^-1 A L = (H^-1 mixed)^T
     return result;
 }
 

@@ -81,7 +81,7 @@ private:
     double sigma_;
     int observations_ = 0;
     VectorXd parameters_;           // the calibrated ones
-    MatrixXd root_;                 // L
+    MatrixXd root_, inverseRoot_;   // L, and T of T^T L = 1
     std::vector<ViewObservations> views_;
 };
 

@@ -91,7 +91,7 @@ void ViewObservations::move(const VectorXd& step)
         objectPoints[i] += Point3d(step[3*i], step[3*i + 1], step[3*i + 2]);
 }
 
-UnknownsOfView::UnknownsOfView(const ViewObservations& observed, const MatrixXd& byPose)
+UnknownsOfView::UnknownsOfView(const ViewObservations& observed, const MatrixXd& byPose) : unknowns_(observed.isScene ? 3 : 6)
 {
     std::vector<std::vector<int>> rows(observed.isScene ? observed.objectPoints.size() : 1);
     int row = 0;
@@ -102,44 +102,53 @@ UnknownsOfView::UnknownsOfView(const ViewObservations& observed, const MatrixXd&
             group.push_back(row++);
             group.push_back(row++);
         }
+    groups_.reserve(rows.size());
+    rows_.reserve(row);
+    normals_.reserve((size_t)row*unknowns_);
+    R_.reserve(rows.size()*unknowns_*unknowns_);
     for (const std::vector<int>& group : rows)
-    {
-        groups_.emplace_back(group, byPose.rightCols(observed.isScene ? 3 : 6));
-        left_ += groups_.back().left();
-    }
+        add(group, byPose.rightCols(unknowns_));
 }
 
-UnknownsOfView::Group::Group(const std::vector<int>& rows, const Eigen::Ref<const MatrixXd>& byUnknowns)
-    : rows_(rows), normals_(MatrixXd::Zero(rows.size(), byUnknowns.cols())), R_(MatrixXd::Zero(byUnknowns.cols(), byUnknowns.cols()))
+void UnknownsOfView::add(const std::vector<int>& rows, const Eigen::Ref<const MatrixXd>& byUnknowns)
 {
+    const Group group{rows_.size(), normals_.size(), R_.size(), (int)rows.size()};
+    groups_.push_back(group);
+    left_ += group.count - unknowns_;
+    rows_.insert(rows_.end(), rows.begin(), rows.end());
+    normals_.resize(normals_.size() + (size_t)group.count*unknowns_);
+    R_.resize(R_.size() + unknowns_*unknowns_);
     VectorXd x;
-    for (Eigen::Index j = 0; j < R_.cols(); j++)
+    for (int j = 0; j < unknowns_; j++)
     {
-        reflect(byUnknowns.col(j).data(), x);       // by those before
-        R_.col(j).head(j) = x.head(j);
+        reflect(group, byUnknowns.col(j).data(), x);        // by those before
+        for (int i = 0; i < j; i++)
+            R_[group.R + i*unknowns_ + j] = x[i];
         auto rest = x.tail(x.size() - j);
         const double length = rest.norm();
         if (!(length > 0.))
             continue;
-        R_(j, j) = x[j] > 0. ? -length : length;
-        x[j] -= R_(j, j);
-        normals_.col(j).tail(rest.size()) = rest/rest.norm();
+        const double diagonal = x[j] > 0. ? -length : length;
+        R_[group.R + j*unknowns_ + j] = diagonal;
+        x[j] -= diagonal;
+        Eigen::Map<VectorXd>(&normals_[group.normals + (size_t)j*group.count + j], rest.size()) = rest/rest.norm();
     }
 }
 
-void UnknownsOfView::Group::reflect(const double* column, VectorXd& x) const
+void UnknownsOfView::reflect(const Group& group, const double* column, VectorXd& x) const
 {
-    const Eigen::Index m = normals_.rows();
+    const int m = group.count;
+    const int* const rows = &rows_[group.rows];
     x.resize(m);
-    for (Eigen::Index i = 0; i < m; i++)
-        x[i] = column[rows_[i]];
-    for (Eigen::Index j = 0; j < normals_.cols(); j++)
+    for (int i = 0; i < m; i++)
+        x[i] = column[rows[i]];
+    const double* normal = &normals_[group.normals];
+    for (int j = 0; j < unknowns_; j++, normal += m)
     {
-        const double* normal = normals_.col(j).data();
         double along = 0.;
-        for (Eigen::Index i = j; i < m; i++)
+        for (int i = j; i < m; i++)
             along += normal[i]*x[i];
-        for (Eigen::Index i = j; i < m; i++)
+        for (int i = j; i < m; i++)
             x[i] -= 2.*along*normal[i];
     }
 }
@@ -153,8 +162,8 @@ MatrixXd UnknownsOfView::projectedOut(const MatrixXd& rows) const
         double* at = all.col(column).data();
         for (const Group& group : groups_)
         {
-            group.reflect(rows.col(column).data(), x);
-            at = std::copy(x.data() + x.size() - group.left(), x.data() + x.size(), at);
+            reflect(group, rows.col(column).data(), x);
+            at = std::copy(x.data() + unknowns_, x.data() + x.size(), at);
         }
     }
     return all;
@@ -162,24 +171,26 @@ MatrixXd UnknownsOfView::projectedOut(const MatrixXd& rows) const
 
 VectorXd UnknownsOfView::solve(const VectorXd& residual) const
 {
-    std::vector<double> step;
-    VectorXd x;
+    VectorXd step(unknowns_*(Eigen::Index)groups_.size()), x;
+    Eigen::Index at = 0;
     for (const Group& group : groups_)
     {
-        group.reflect(residual.data(), x);
-        const VectorXd part = group.solveR(x);
-        step.insert(step.end(), part.data(), part.data() + part.size());
+        reflect(group, residual.data(), x);
+        step.segment(at, unknowns_) = solveR(group, x);
+        at += unknowns_;
     }
-    return Eigen::Map<VectorXd>(step.data(), step.size());
+    return step;
 }
 
-VectorXd UnknownsOfView::Group::solveR(const VectorXd& x) const
+VectorXd UnknownsOfView::solveR(const Group& group, const VectorXd& x) const
 {
-    const double NOTHING = 1e-14*R_.diagonal().cwiseAbs().maxCoeff();       // what moves no pixel is not moved
-    VectorXd step = VectorXd::Zero(R_.cols());
-    for (Eigen::Index j = R_.cols() - 1; j >= 0; j--)
-        if (std::abs(R_(j, j)) > NOTHING)
-            step[j] = (x[j] - R_.row(j).dot(step))/R_(j, j);
+    typedef Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> RowMatrix;
+    const Eigen::Map<const RowMatrix> R(&R_[group.R], unknowns_, unknowns_);
+    const double NOTHING = 1e-14*R.diagonal().cwiseAbs().maxCoeff();        // what moves no pixel is not moved
+    VectorXd step = VectorXd::Zero(unknowns_);
+    for (int j = unknowns_ - 1; j >= 0; j--)
+        if (std::abs(R(j, j)) > NOTHING)
+            step[j] = (x[j] - R.row(j).dot(step))/R(j, j);
     return step;
 }
 

@@ -39,23 +39,22 @@ public:
     Eigen::VectorXd solve(const Eigen::VectorXd& residual) const;
 
 private:
-    /** Coordinates that share unknowns: all of a board, those of one point of a scene. Q R = derivatives by these, by Householder: a scene
-    has thousands of groups of four rows. */
-    class Group
+    /** Coordinates that share unknowns: all of a board, those of one point of a scene. Q R = derivatives by these, by Householder. A scene
+    has thousands of groups of four rows, so that all are in one place. */
+    struct Group
     {
-    public:
-        Group(const std::vector<int>& rows, const Eigen::Ref<const Eigen::MatrixXd>& byUnknowns);
-        //! x = Q^T of its rows of a column of all.
-        void reflect(const double* column, Eigen::VectorXd& x) const;
-        Eigen::VectorXd solveR(const Eigen::VectorXd& x) const;
-        Eigen::Index left() const { return normals_.rows() - normals_.cols(); }
-
-    private:
-        std::vector<int> rows_;
-        Eigen::MatrixXd normals_, R_;       //!< of the mirrors, of length 1 or 0
+        size_t rows, normals, R;            //!< where its own begin
+        int count;                          //!< of rows
     };
+    void add(const std::vector<int>& rows, const Eigen::Ref<const Eigen::MatrixXd>& byUnknowns);
+    //! x = Q^T of its rows of a column of all.
+    void reflect(const Group& group, const double* column, Eigen::VectorXd& x) const;
+    Eigen::VectorXd solveR(const Group& group, const Eigen::VectorXd& x) const;
 
+    int unknowns_;                          //!< of a group
     std::vector<Group> groups_;
+    std::vector<int> rows_;
+    std::vector<double> normals_, R_;       //!< of the mirrors, of length 1 or 0; rows of R
     Eigen::Index left_ = 0;                 //!< rows, of all
 };
 
