@@ -167,23 +167,36 @@ struct KnownNormal
     explicit KnownNormal(Random& random, int cameras = 1) : truth(makeRig(cameras, std::vector<int>(cameras, 0), 1.333)),
         scene(makeRigScene(truth, ObjectViews(3, board()), random, 0.5)) {}
 
-    //! @param off of the given normal, radians about two axes
-    RigCall call(const Vec2d& off, double deviation) const
+    //! Two axes across the normal of a camera's window, beside each other.
+    Matx32d acrossNormal(size_t c = 0) const
+    {
+        const Vec3d n = truth.cameras[c]->window().normal, x = normalize(n.cross(Vec3d(0, 1, 0))), y = n.cross(x);
+        return Matx32d(x[0], y[0], x[1], y[1], x[2], y[2]);
+    }
+
+    //! @param off of the given normal, radians about two axes, and distance
+    RigCall call(const Vec3d& off, const Matx44d& ofPlace, int flags) const
     {
         RigCall call(truth, scene, false);
         for (size_t c = 0; c < call.cameras.size(); c++)
         {
             GlassWindow window = call.cameras[c]->window();
-            const Vec3d n = truth.cameras[c]->window().normal;
-            const Vec3d across = normalize(n.cross(Vec3d(0, 1, 0)));
-            window.normal = normalize(n + off[0]*across + off[1]*n.cross(across));
+            const Vec3d turn = acrossNormal(c)*Vec2d(off[0], off[1]);
+            window.normal = normalize(truth.cameras[c]->window().normal + turn);
+            if (!(flags & GLASS_FREE_DISTANCE))
+                window.distance = truth.cameras[c]->window().distance + off[2];
             call.cameras[c]->setWindow(window);
         }
         Mat prior(16, 16, CV_64F, Scalar(0));
-        for (int i = NORMAL; i < NORMAL + 3; i++)
-            prior.at<double>(i, i) = deviation*deviation;
-        call.run(GLASS_FREE_DISTANCE, std::vector<Mat>(call.cameras.size(), prior));
+        Mat(ofPlace).copyTo(prior(Rect(NORMAL, NORMAL, 4, 4)));
+        call.run(flags, std::vector<Mat>(call.cameras.size(), prior));
         return call;
+    }
+
+    RigCall call(const Vec2d& off, double deviation) const
+    {
+        const double v = deviation*deviation;
+        return call(Vec3d(off[0], off[1], 0), Matx44d::diag(Vec4d(v, v, v, 0)), GLASS_FREE_DISTANCE);
     }
 
     static const int NORMAL = 8;
@@ -238,4 +251,55 @@ TEST_CASE("Errors of a normal that is known so far are what is stated", "[known]
     CHECK(x == Approx(1).margin(0.3));
     CHECK(y == Approx(1).margin(0.3));
     CHECK(stated[0]/TRIALS < std::min(alone, DEVIATION*DEVIATION));
+}
+
+TEST_CASE("A normal and a distance that are known together are estimated within that", "[known][prior]")
+{
+    // As markers on the window tell them, beside the camera's axis: where the window is further away there, or more inclined.
+    const int TRIALS = 40;
+    const double MARKER = 0.3;
+    double mahalanobis = 0, errors[3] = {}, stated[3] = {};
+    CAPTURE(seed());
+    for (int trial = 0; trial < TRIALS; trial++)
+    {
+        Random random(3370 + trial);
+        const KnownNormal k(random);
+        const Matx32d across = k.acrossNormal();
+        Matx33d information = Matx33d::zeros();
+        for (int i = 0; i < 4; i++)             // of turns about the two axes, and of the distance
+        {
+            const Vec3d row(200 + 60*(i % 2), 60*(i/2), -1);
+            information += row*row.t()*(1/(MARKER*MARKER));
+        }
+        const Matx33d ofTurns = information.inv(DECOMP_CHOLESKY);
+        Mat values, vectors;
+        eigen(ofTurns, values, vectors);
+        Vec3d off;
+        for (int i = 0; i < 3; i++)
+            off += random.normal(std::sqrt(values.at<double>(i)))*Vec3d(vectors.ptr<double>(i));
+        Matx43d place = Matx43d::zeros();
+        for (int i = 0; i < 6; i++)
+            place(i/2, i % 2) = across(i/2, i % 2);
+        place(3, 2) = 1;
+        const RigCall call = k.call(off, place*ofTurns*place.t(), 0);
+        const GlassWindow found = call.cameras[0]->window(), truth = k.truth.cameras[0]->window();
+        const Vec2d turn = across.t()*(found.normal - truth.normal);
+        const Vec3d error(turn[0], turn[1], found.distance - truth.distance);
+        const Matx44d C = Mat(call.covariance(Rect(KnownNormal::NORMAL, KnownNormal::NORMAL, 4, 4)));
+        const Matx33d ofError = place.t()*C*place;
+        mahalanobis += error.dot(ofError.inv(DECOMP_CHOLESKY)*error)/3;
+        const Vec3d atMarkers(230, 30, -1);         // how far the window is from the middle of the markers
+        CHECK(std::sqrt(atMarkers.dot(ofError*atMarkers)) < 1.001*MARKER/2);
+        for (int i = 0; i < 3; i++)
+        {
+            errors[i] += error[i]*error[i];
+            stated[i] += ofError(i, i);
+        }
+    }
+    std::cout << "[numbers] normal and distance known together, error over stated: turns " << std::sqrt(errors[0]/stated[0]) << ", "
+              << std::sqrt(errors[1]/stated[1]) << ", distance " << std::sqrt(errors[2]/stated[2]) << "; all three "
+              << std::sqrt(mahalanobis/TRIALS) << std::endl;
+    for (int i = 0; i < 3; i++)
+        CHECK(std::sqrt(errors[i]/stated[i]) == Approx(1).margin(0.3));
+    CHECK(std::sqrt(mahalanobis/TRIALS) == Approx(1).margin(0.2));
 }

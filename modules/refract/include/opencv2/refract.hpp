@@ -60,8 +60,8 @@ without a window.
   a combination is known. A variance of 0: the quantity is exactly as given; flags may still free a window, and all that
   rigCovariance is of. A variance of NaN: nothing is known of it, and its row and column are not read (what is propagated must
   be known). `lengthScaleStd`, and the standard deviation of a length, may be NaN, too. Of `cameraCovariances` the blocks of
-  the lens, of the normal or the center and axis, of media, and of R and T are read, not the correlations between these:
-  `rigCovariance` has them all.
+  the lens, of the window (its normal or center and axis, its distance, its media), and of R and T are read, not the
+  correlations between these: `rigCovariance` has them all.
 - **Messages**: the library writes none. While it solves, what Ceres' logger (glog) has below FATAL is muted, in all threads.
 
 ### The model

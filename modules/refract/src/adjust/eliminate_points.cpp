@@ -89,20 +89,8 @@ void addPriors(const Problem& problem, const FreeSpace& space, NormalEquations& 
         if (rows.rows() > 0)
             addPrior(rows, problem.priorResidual(block), space.first[block], equations);
     }
-    if (problem.rigPrior().count() == 0)
-        return;
-    const MatrixXd byValues = problem.rigPriorRows();
-    MatrixXd rows(byValues.rows(), 0);
-    int first = 0;
-    for (int block = 0; block < problem.cameraBlockCount(); block++)
-    {
-        const MatrixXd& basis = space.bases[block];
-        rows.conservativeResize(Eigen::NoChange, rows.cols() + basis.cols());
-        if (basis.cols() > 0)       // Eigen has no products of nothing
-            rows.rightCols(basis.cols()) = product(byValues.middleCols(first, basis.rows()), basis);
-        first += (int)basis.rows();
-    }
-    addPrior(rows, problem.rigPriorResidual(), 0, equations);
+    if (problem.rigPrior().count() > 0)
+        addPrior(rigPriorRows(problem, space), problem.rigPriorResidual(), 0, equations);
 }
 
 //! A cluster without its points.

@@ -178,21 +178,25 @@ Information eliminatePoses(const Problem& problem, const FreeSpace& space, const
         information.ofInner += view.ofPose;
         information.inner.push_back(view.pose);
     }
-    for (int block = 0; block < problem.outerCount(); block++)
+    const auto addPrior = [&](const MatrixXd& rows, const VectorXd& residual, int first)
     {
-        const int own = space.columnsOf(block);
-        const MatrixXd rows = product(problem.priorRows(block), space.bases[block]);
-        if (rows.rows() == 0)
-            continue;
-        MatrixXd both(rows.rows(), own + 1);
-        both << rows, problem.priorResidual(block);
+        MatrixXd both(rows.rows(), rows.cols() + 1);
+        both << rows, residual;
         std::vector<int> columns;
-        for (int j = 0; j < own; j++)
-            columns.push_back(space.first[block] + j);
-        squares.segment(space.first[block], own) += rows.colwise().squaredNorm().transpose();
+        for (int j = 0; j < rows.cols(); j++)
+            columns.push_back(first + j);
+        squares.segment(first, rows.cols()) += rows.colwise().squaredNorm().transpose();
         columns.push_back(count);
         root.add(both, columns);
+    };
+    for (int block = 0; block < problem.outerCount(); block++)
+    {
+        const MatrixXd rows = product(problem.priorRows(block), space.bases[block]);
+        if (rows.rows() > 0)
+            addPrior(rows, problem.priorResidual(block), space.first[block]);
     }
+    if (problem.rigPrior().count() > 0)
+        addPrior(rigPriorRows(problem, space), problem.rigPriorResidual(), 0);
     const MatrixXd triangle = root.triangle();
     information.root = triangle.topLeftCorner(count, count);
     information.residual = triangle.topRightCorner(count, 1);

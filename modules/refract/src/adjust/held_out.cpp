@@ -184,6 +184,14 @@ MatrixXd priorsOf(const Problem& problem, const FreeSpace& space, bool withPoses
         rows.rightCols<1>() = problem.priorResidual(block);
         priors.add(rows);
     }
+    if (problem.rigPrior().count() > 0)
+    {
+        const MatrixXd byFree = rigPriorRows(problem, space);
+        MatrixXd rows = MatrixXd::Zero(byFree.rows(), count + 1);
+        rows.leftCols(byFree.cols()) = byFree;
+        rows.rightCols<1>() = problem.rigPriorResidual();
+        priors.add(rows);
+    }
     return priors.rows;
 }
 

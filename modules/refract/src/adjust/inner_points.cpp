@@ -212,11 +212,7 @@ std::vector<MatrixXd> informationOfTied(const Problem& problem)
 bool optimizePoints(Problem& problem, double& squaredError)
 {
     const std::vector<double> squares = optimizeClusters(problem, false);
-    squaredError = std::accumulate(squares.begin(), squares.end(), 0.);
-    for (int block = 0; block < problem.outerCount(); block++)
-        squaredError += problem.priorResidual(block).squaredNorm();
-    if (problem.rigPrior().count() > 0)
-        squaredError += problem.rigPriorResidual().squaredNorm();
+    squaredError = std::accumulate(squares.begin(), squares.end(), problem.squaredOuterPriors());
     return std::isfinite(squaredError);
 }
 

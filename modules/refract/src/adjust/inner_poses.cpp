@@ -108,11 +108,9 @@ bool optimizePoses(Problem& problem, double& squaredError)
             if (!optimizePose(problem, view, squares[view]))
                 isPossible = false;
     });
-    squaredError = 0;
+    squaredError = problem.squaredOuterPriors();
     for (double ofView : squares)
         squaredError += ofView;
-    for (int block = 0; block < problem.outerCount(); block++)
-        squaredError += problem.priorResidual(block).squaredNorm();
     return isPossible;
 }
 

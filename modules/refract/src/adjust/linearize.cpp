@@ -3,6 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "adjust/linearize.hpp"
+#include "math/dense.hpp"
 
 namespace cv { namespace refract {
 
@@ -64,6 +65,22 @@ std::vector<ImageRows> linearize(const Problem& problem, const FreeSpace& space)
     for (std::unique_ptr<ImageRows>& image : rows)
         all.push_back(std::move(*image));
     return all;
+}
+
+Eigen::MatrixXd rigPriorRows(const Problem& problem, const FreeSpace& space)
+{
+    const Eigen::MatrixXd byValues = problem.rigPriorRows();
+    Eigen::MatrixXd rows(byValues.rows(), 0);
+    int first = 0;
+    for (int block = 0; block < problem.cameraBlockCount(); block++)
+    {
+        const Eigen::MatrixXd& basis = space.bases[block];
+        rows.conservativeResize(Eigen::NoChange, rows.cols() + basis.cols());
+        if (basis.cols() > 0)       // Eigen has no products of nothing
+            rows.rightCols(basis.cols()) = product(byValues.middleCols(first, basis.rows()), basis);
+        first += (int)basis.rows();
+    }
+    return rows;
 }
 
 }} // namespace

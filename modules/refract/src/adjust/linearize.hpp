@@ -44,6 +44,9 @@ struct ImageRows
 //! Of all images, with their own weights.
 std::vector<ImageRows> linearize(const Problem& problem, const FreeSpace& space);
 
+//! What is known of all cameras together, by the free coordinates of their blocks, which come first.
+Eigen::MatrixXd rigPriorRows(const Problem& problem, const FreeSpace& space);
+
 }} // namespace
 
 #endif // OPENCV_REFRACT_LINEARIZE_HPP

@@ -366,6 +366,14 @@ Eigen::VectorXd Problem::rigPriorResidual() const
     return timesVector(rigPriorRows(), change - rigPrior_.mean);
 }
 
+double Problem::squaredOuterPriors() const
+{
+    double sum = rigPrior_.count() > 0 ? rigPriorResidual().squaredNorm() : 0;
+    for (int block = 0; block < outerCount(); block++)
+        sum += priorResidual(block).squaredNorm();
+    return sum;
+}
+
 int Problem::equationCount() const
 {
     int count = coordinateCount() + scene_.lengthCount() + rigPrior_.count();

@@ -196,6 +196,7 @@ public:
     const RigPrior& rigPrior() const { return rigPrior_; }
     Eigen::MatrixXd rigPriorRows() const;
     Eigen::VectorXd rigPriorResidual() const;
+    double squaredOuterPriors() const;          //!< of all priors but those of eliminated poses
     int cameraBlockCount() const { return cameraBlocks_; }
 
     //! One image's residuals and their derivatives: by its pose, and by all coordinates of blocksOf().
@@ -225,6 +226,8 @@ private:
                              const std::vector<String>& names, const std::vector<bool>& isFree);
     void addTargetBlock(const Eigen::MatrixXd& covariance);
     void setRigPrior(const Eigen::MatrixXd& covariance);
+    Eigen::MatrixXd correlatedWindows(const std::vector<CameraPrior>& cameraPriors) const;
+    std::vector<double> givenValues(const ParameterBlock& block, const Rig& given, const std::vector<Pose>& poses) const;
     void addCameraBlocks(int camera, const CameraPrior& prior, int flags);
     void addImages(const RigViews& views);
     void addImage(int view, int camera, bool refracted, const ImagePoints& points);

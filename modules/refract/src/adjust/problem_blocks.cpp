@@ -43,6 +43,9 @@ Problem::Problem(const Rig& rig, const RigViews& views, const std::vector<Pose>&
     : rig_(rig), imagesOfView_(poses.size()), isSeen_(poses.size(), false), pixelSigma_(1)
 {
     addBlocks(poses, posePriors, cameraPriors, flags, targetCovariance);
+    const Eigen::MatrixXd windows = correlatedWindows(cameraPriors);
+    if (windows.size() > 0)
+        setRigPrior(windows);
     addImages(views);
     updateCameras();
 }
@@ -59,8 +62,9 @@ Problem::Problem(const Rig& rig, const std::vector<SceneImage>& images, int poin
         sharedErrors(0, 0) = lengthScaleSigma*lengthScaleSigma;
     }
     addBlocks(poses, posePriors, cameraPriors, flags, sharedErrors);
-    if (rigCovariance.size() > 0)
-        setRigPrior(rigCovariance);
+    const Eigen::MatrixXd known = rigCovariance.size() > 0 ? rigCovariance : correlatedWindows(cameraPriors);
+    if (known.size() > 0)
+        setRigPrior(known);
     for (const SceneImage& image : images)
         addImage(image.view, image.camera, true, image.points);
     updateCameras();
@@ -110,42 +114,49 @@ void Problem::addTargetBlock(const Eigen::MatrixXd& covariance)
     block.setPrior(covariance);
 }
 
+//! What a block was given as; empty: nothing is known of it, or it is another camera's now.
+std::vector<double> Problem::givenValues(const ParameterBlock& block, const Rig& given, const std::vector<Pose>& poses) const
+{
+    if (block.kind == ParameterBlock::TARGETS)
+        return {};
+    if (block.kind == ParameterBlock::POSE || block.kind == ParameterBlock::EXTRINSICS)
+    {
+        if (block.kind == ParameterBlock::POSE ? poses.empty() : !given.extrinsics[block.index].found)
+            return {};
+        return sixOf(block.kind == ParameterBlock::POSE ? poses[block.index] : given.extrinsics[block.index]);
+    }
+    const Camera& camera = given.cameras[block.index];
+    const int first = block.kind == ParameterBlock::LENS ? 0 : camera.lensCount() +
+        (block.kind == ParameterBlock::PLACE ? block.at.normal : block.at.media);
+    if (block.kind == ParameterBlock::LENS || given.owns(block.index))
+    {
+        const std::vector<double> all = camera.parameters();
+        return std::vector<double>(all.begin() + first, all.begin() + first + block.values.size());
+    }
+    if (block.kind != ParameterBlock::PLACE || hasCenter(block.at.shape))
+        return {};              // the search gave the window to another camera
+    // The given normal, as the camera sees it that has it now.
+    const int from = given.owner[block.index];
+    const Vec3d n = rotationMatrix(rig_.extrinsics[block.index].rvec)*(rotationMatrix(rig_.extrinsics[from].rvec).t()
+        *given.cameras[from].layers().normal());
+    return std::vector<double>(n.val, n.val + 3);
+}
+
 void Problem::setPriorMeans(const Rig& given, const std::vector<Pose>& poses)
 {
-    for (ParameterBlock& block : blocks_)
+    int first = 0;              // of the block's values in those of the rig
+    for (int block = 0; block < (int)blocks_.size(); block++)
     {
-        if (block.sqrtInformation.rows() == 0 || block.kind == ParameterBlock::TARGETS)
-            continue;
-        std::vector<double> mean;
-        if (block.kind == ParameterBlock::POSE || block.kind == ParameterBlock::EXTRINSICS)
-        {
-            if (block.kind == ParameterBlock::POSE ? poses.empty() : !given.extrinsics[block.index].found)
-                continue;
-            const Pose& pose = block.kind == ParameterBlock::POSE ? poses[block.index] : given.extrinsics[block.index];
-            mean.assign(pose.rvec.val, pose.rvec.val + 3);
-            mean.insert(mean.end(), pose.tvec.val, pose.tvec.val + 3);
-        }
-        else
-        {
-            const Camera& camera = given.cameras[block.index];
-            const int first = block.kind == ParameterBlock::LENS ? 0 : camera.lensCount() +
-                (block.kind == ParameterBlock::PLACE ? block.at.normal : block.at.media);
-            const bool isElsewhere = block.kind != ParameterBlock::LENS && !given.owns(block.index);
-            if (isElsewhere && (block.kind != ParameterBlock::PLACE || hasCenter(block.at.shape)))
-                continue;           // the search gave the window to another camera
-            const std::vector<double> all = camera.parameters();
-            mean.assign(all.begin() + first, all.begin() + first + block.values.size());
-            if (isElsewhere)        // the given normal, as the camera sees it that has it now
-            {
-                const int from = given.owner[block.index];
-                const Vec3d n = rotationMatrix(rig_.extrinsics[block.index].rvec)*(rotationMatrix(rig_.extrinsics[from].rvec).t()
-                    *given.cameras[from].layers().normal());
-                mean.assign(n.val, n.val + 3);
-            }
-        }
-        for (int i = 0; i < (int)mean.size(); i++)
-            if (std::isfinite(mean[i]))         // else nothing is known of it
-                block.priorMean[i] = mean[i];
+        Eigen::VectorXd& mean = blocks_[block].priorMean;
+        const bool isOfRig = rigPrior_.count() > 0 && block < cameraBlocks_;
+        const std::vector<double> known = isOfRig || blocks_[block].sqrtInformation.rows() > 0 ? givenValues(blocks_[block], given, poses)
+                                                                                               : std::vector<double>();
+        for (int i = 0; i < (int)known.size(); i++)
+            if (std::isfinite(known[i]))        // else nothing is known of it
+                mean[i] = known[i];
+        if (isOfRig)
+            rigPrior_.mean.segment(first, mean.size()) = mean;
+        first += (int)mean.size();
     }
 }
 
@@ -192,6 +203,35 @@ void Problem::setRigPrior(const Eigen::MatrixXd& covariance)
     rigPrior_ = makeRigPrior(mean, known, product(transposeTimes(known, ofValues), known));
 }
 
+//! A camera's prior has a covariance of where its window is with its distance, or what else the window has.
+static bool correlatesWindow(const CameraPrior& prior, const Camera& camera)
+{
+    const WindowLayout& at = camera.layers().at();
+    const int lens = camera.lensCount();
+    if (prior.covariance.cols() < lens + at.count)
+        return false;
+    return (prior.covariance.block(lens + at.normal, lens + at.media, at.media - at.normal, at.count - at.media).array().abs() > 0).any();
+}
+
+/** Priors of windows that are of two blocks, as a covariance of the public parameters, which knows nothing else; empty: there is none.
+Markers on a pane, say, tell its normal and its distance together. */
+Eigen::MatrixXd Problem::correlatedWindows(const std::vector<CameraPrior>& cameraPriors) const
+{
+    Eigen::MatrixXd known;
+    for (int c = 0; c < (int)cameraPriors.size(); c++)
+    {
+        if (!rig_.owns(c) || !correlatesWindow(cameraPriors[c], rig_.cameras[c]))
+            continue;
+        if (known.size() == 0)
+            known = Eigen::MatrixXd::Zero(publicCount(), publicCount());
+        const int lens = rig_.cameras[c].lensCount(), count = rig_.cameras[c].layers().at().count;
+        const int row = publicRow(ParameterBlock::LENS, c) + lens;
+        const Eigen::MatrixXd window = cameraPriors[c].covariance.block(lens, lens, count, count);
+        known.block(row, row, count, count) = window.array().isNaN().select(0, window);
+    }
+    return known;
+}
+
 void Problem::addCameraBlocks(int c, const CameraPrior& prior, int flags)
 {
     const Camera& camera = rig_.cameras[c];
@@ -200,18 +240,20 @@ void Problem::addCameraBlocks(int c, const CameraPrior& prior, int flags)
     const std::vector<String> names = camera.parameterNames();
     // Of a camera without a window the flags of the others' windows mean nothing.
     const std::vector<bool> isFree = camera.refracts() ? freeWindowParameters(at, flags) : std::vector<bool>(at.count, false);
+    bool isBlockKnown = true;       // by itself
     const auto add = [&](ParameterBlock::Kind kind, int first, const std::vector<bool>& free)
     {
         const int size = (int)free.size();
         ParameterBlock& block = addBlock(kind, c, std::vector<double>(all.begin() + first, all.begin() + first + size),
                                          std::vector<String>(names.begin() + first, names.begin() + first + size), free);
-        if (first + size <= prior.covariance.cols())
+        if (isBlockKnown && first + size <= prior.covariance.cols())
             block.setPrior(prior.covariance.block(first, first, size, size));
     };
     const int lens = camera.lensCount();
     add(ParameterBlock::LENS, 0, freeLens(camera, flags));
     if (!rig_.owns(c))
         return;
+    isBlockKnown = !correlatesWindow(prior, camera);
     add(ParameterBlock::PLACE, lens + at.normal, std::vector<bool>(at.media - at.normal, camera.refracts() && !(flags & GLASS_FIX_NORMAL)));
     add(ParameterBlock::MEDIA, lens + at.media, std::vector<bool>(isFree.begin() + at.media, isFree.end()));
 }
