@@ -88,7 +88,7 @@ void addOptions(OptionParser& parser, Options& o)
     parser.add("--tilted", o.turned.windows, "the same of each window").check(moreThanZero());
     o.bundle.window.addTo(parser, "needed where the medium on its other side is another");
     o.bundle.std.addTo(parser, false);
-    o.bundle.normals.addTo(parser);
+    o.bundle.places.addTo(parser);
     parser.add("--unit", o.bundle.unit, "unit of all lengths (default: that of start.yml, or mm)").check(isMember(unitNames()));
     parser.addFlag("--no-window", o.bundle.noWindow, "start.yml has no glass_window, and there is none");
     parser.addNegation("--no-robust", o.robust, "every match is right; by default wrong ones are left out");
@@ -127,7 +127,9 @@ Calibration resultOf(const Options& o, const BundleAdjustment& adjustment, const
     file.verdict = findings.verdict();
     file.contradictions = findings.contradictions;
     file.command = command.line();
-    file.time = timeOfFiles({o.start, o.points, o.lengths, o.survey.positions});
+    std::vector<std::string> inputs = {o.start, o.points, o.lengths, o.survey.positions};
+    inputs.insert(inputs.end(), o.bundle.places.files().begin(), o.bundle.places.files().end());
+    file.time = timeOfFiles(inputs);
     return file;
 }
 
@@ -173,6 +175,7 @@ int bundleMatches(const Options& options, const Calibration& file, const Command
     const BundleAdjustment adjustment = adjustBundle(start, matches, lengths, options.robust);
     const double knownSigma = options.pixelSigma > 0. ? options.pixelSigma : !matches.stds.empty() ? matches.usualStd() : file.sigma;
     BundleFindings findings = findingsOf(start, lengths, adjustment, knownSigma, options.maxRms);
+    checkPlaces(start, [&](const BundleStart& freed) { return adjustBundle(freed, matches, lengths, options.robust); }, findings);
     explain(options, file, matches, lengths, start, adjustment, findings);
     const std::string unit = unitOf(options, file);
     if (!options.pointsOut.empty())
@@ -217,6 +220,7 @@ void refuseOverwriting(const Options& o, const std::string& settings)
     std::vector<Output> outputs = {{"--out", o.out, OUTPUT_CALIBRATION}, {"--points-out", o.pointsOut, OUTPUT_TEXT},
                                    {"--poses-out", o.posesOut, OUTPUT_TEXT}, {"--summary", o.summary, OUTPUT_TEXT}};
     std::vector<std::string> inputs = {o.start, o.points, o.lengths, o.survey.positions, settings};
+    inputs.insert(inputs.end(), o.bundle.places.files().begin(), o.bundle.places.files().end());
     for (bool isBinary : {true, false})
     {
         for (const std::string& file : o.colmapOut.empty() ? std::vector<std::string>() : colmapFilesOf(o.colmapOut, isBinary))

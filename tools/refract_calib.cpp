@@ -33,6 +33,11 @@ It prints ten lines: the verdict and its reasons, the error of a measured point 
 of, what the next images should show. Judge the result by the held-out boards (calibrated on the others in turn), not by the
 residuals of the fit.
 
+--pane-points=markers.csv: what is known of where a flat window is, by markers on its face towards the camera, or by floats on the water's
+surface: id,x,y,z[,sx,sy,sz] in the frame of the camera (its centre the origin, z ahead), as refract_measure writes them with the
+cameras' calibration without the window. They tell normal and distance together; what all of them share is in --normal-std and
+--distance-std (default: 1 mm, how well the centre of a camera is known).
+
 --watch waits while cameras fill the folders of --direct, --glass, --direct2, ... (--watch=FOLDER: only that one), says after each
 image whether the board was found, how sharp and how well exposed it is, which image its name still waits for, and what the next one
 should show. Copies and files that cannot be read are named and left out. Then it calibrates: after --watch-count images or
@@ -57,7 +62,7 @@ The same input gives the same bytes: outputs carry the time of the newest image 
 #include "assess/live_limits.hpp"
 #include "calibrate/data_checks.hpp"
 #include "calibrate/few_points.hpp"
-#include "calibrate/given_normals.hpp"
+#include "calibrate/given_places.hpp"
 #include "calibrate/given_window.hpp"
 #include "calibrate/image_fit.hpp"
 #include "calibrate/lens_choice.hpp"
@@ -100,7 +105,7 @@ struct Options
     std::string channel;
     double watchGain = 0.;
     GivenStdOptions std;
-    GivenNormals normals;
+    GivenPlaces places;
     std::vector<std::string> free;
     bool unpaired = false, sharedWindow = false;
     bool crossValidation = true, robust = true;
@@ -163,7 +168,7 @@ Options parseOptions(Command& command)
         .captureDefault();
     o.window.addTo(parser, "where it is needed and not given, it is estimated");
     o.std.addTo(parser);
-    o.normals.addTo(parser);
+    o.places.addTo(parser);
     parser.add("--channel", o.channel, "of colour images, in which the target is looked for, and for which the calibration is "
         "valid (default: the brightness of all)").check(isMember({"red", "green", "blue"}));
     parser.add("--free", o.free, "what to estimate beside the normal, or the centre").delimiter(',')
@@ -258,6 +263,8 @@ std::vector<int> readWindowsOfCameras(const Options& o)
     return windows;
 }
 
+bool isDistanceKnown(const Options& o) { return o.window.isDistanceSaid() || o.places.areOfMarkers(); }
+
 //! Standard deviations of what is given.
 void takeStd(const Options& o, const Target* target, RigOptions& rig)
 {
@@ -265,22 +272,26 @@ void takeStd(const Options& o, const Target* target, RigOptions& rig)
     given.layers = rig.layers;
     given.outer = rig.outer;
     given.equalMedia = !hasDifferentMedia(rig.window);
-    given.distance = o.window.isDistanceSaid();
+    given.distance = isDistanceKnown(o);
     given.shape = rig.window.shape;
     given.square = target ? target->square() : 0.;
     given.millimetre = 1./millimetresIn(o.unit);
     given.flags = rig.flags;
     rig.std = o.std.of(given);
-    rig.std.normal = o.normals.std();
+    rig.std.normal = o.places.normalStd();
     o.window.requireBow(rig.std, rig.flags);
     rig.window = withEstimated(rig.window, rig.std, rig.flags);
 }
 
-void takeNormals(const Options& o, RigOptions& rig)
+void takePlaces(const Options& o, RigOptions& rig)
 {
-    if (o.normals.isSaid() && isRound(rig.window))
-        throw Failure("--normal is of a flat window; where a " + o.window.shape() + " is, --center says, with --center-std");
-    rig.normals = o.normals.of(o.images.cameraCount(), o.sharedWindow);
+    const std::string option = o.places.option();
+    if (o.places.isSaid() && isRound(rig.window))
+        throw Failure(option + " is of a flat window; where a " + o.window.shape() + " is, --center says, with --center-std");
+    if (o.places.areOfMarkers() && rig.flags & GLASS_FREE_DISTANCE)
+        throw Failure("--free=distance says that the images alone tell the distance, and --pane-points what is known of it: leave one out");
+    rig.places = o.places.of(o.images.cameraCount(), rig.windows);
+    rig.placeOption = option;
 }
 
 //! The window as far as it is known, and what is to be found; refuses what no image can tell.
@@ -298,10 +309,10 @@ void readWindow(const Options& o, RigOptions& rig)
         throw Failure("--max-normal-std is of a flat window, and a " + o.window.shape() + " has no normal: limit the error of points, "
                       "--max-error-at");
     rig.windows = readWindowsOfCameras(o);
-    takeNormals(o, rig);
+    takePlaces(o, rig);
     if (!o.poses.empty())
         rig.flags |= GLASS_USE_POSES;
-    if (hasDifferentMedia(rig.window) && !o.window.isDistanceSaid() && !isRound(rig.window))
+    if (hasDifferentMedia(rig.window) && !isDistanceKnown(o) && !isRound(rig.window))
         rig.flags |= GLASS_FREE_DISTANCE;
 }
 
@@ -370,6 +381,7 @@ RigCalibration prepare(const Options& o, const Target* target)
     if (o.lens != "auto")
         c.options.lensCoefficients = pinholeLenses().at(o.lens).coefficients;
     takeStd(o, target, c.options);
+    c.inputs.insert(c.inputs.end(), o.places.files().begin(), o.places.files().end());
     c.limits = o.limits;
     c.label = o.label;
     c.unit = o.unit;
@@ -454,6 +466,7 @@ void checkOutputs(const Options& o, const std::string& settings)
     std::vector<std::string> inputs = o.images.all();
     inputs.insert(inputs.end(), o.camera.begin(), o.camera.end());
     inputs.insert(inputs.end(), {o.poses, o.target.dots, settings});
+    inputs.insert(inputs.end(), o.places.files().begin(), o.places.files().end());
     tools::checkOutputs({{"--out", o.out, OUTPUT_CALIBRATION}, {"--summary", o.summary, OUTPUT_TEXT},
                          {"--report", o.report, OUTPUT_TEXT}, {"--pinhole-out", o.pinholeOut, OUTPUT_CALIBRATION}},
                         inputs);

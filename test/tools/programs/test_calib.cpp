@@ -312,6 +312,58 @@ TEST_CASE("refract_calib finds the distance of a water surface", "[calib_tool]")
     CHECK(degreesBetween(window.normal, normalize(Vec3d(0.05, -0.08, 1))) < 0.1);
 }
 
+TEST_CASE("Floats on the water's surface tell refract_calib its normal and distance; wrong ones are named", "[calib_tool]")
+{
+    const TemporaryFolder f;
+    const Vec3d normal = normalize(Vec3d(0.05, -0.08, 1));
+    SceneOptions options;
+    options.window = [&](int) {
+        GlassWindow water;
+        water.normal = normal;
+        water.outerIndex = 1.333;
+        water.distance = 150.;
+        return water;
+    };
+    writeScene(f, options, 106);
+    const auto floats = [&](double distance, double std) {
+        scenes::Random random(4560);
+        const Vec3d x = normalize(normal.cross(Vec3d(0, 1, 0))), y = normal.cross(x);
+        std::ofstream table(f / "floats.csv");
+        table << "id,x,y,z\n";
+        for (int i = 0; i < 6; i++)
+        {
+            const Vec3d X = distance*normal + (30. + 40*(i % 3))*x + 40.*(i/3)*y;
+            table << format("%d,%.6f,%.6f,%.6f\n", i, X[0] + random.normal(std), X[1] + random.normal(std), X[2] + random.normal(std));
+        }
+        return " --outer-index=1.333" + lens(f) + " --pane-points=" + f / "floats.csv" + format(" --pane-points-std=%g", std);
+    };
+    const auto distanceStd = [&] { return (double)FileStorage(f / "calib.yml", FileStorage::READ)["glass_window_std"]["distance"]; };
+    const ToolResult alone = runTool(inputs(f, " --outer-index=1.333" + lens(f)));
+    REQUIRE(alone.code == 0);
+    const double loose = distanceStd();
+    const ToolResult r = runTool(inputs(f, floats(150, 0.02) + " --distance-std=0 --verbose"));
+    INFO(scenes::seed() << r.out << r.err);
+    REQUIRE(r.code == 0);
+    const GlassWindow window = RefractiveCamera::read(f / "calib.yml")->window();
+    const double known = distanceStd();
+    CHECK(known < 0.7*loose);
+    CHECK(std::abs(window.distance - 150.) < 4*known);
+    CHECK(degreesBetween(window.normal, normal) < 0.05);
+    CHECK(mentions(r.out, "  --pane-points"));
+
+    CHECK_FALSE(mentions(r.out, "the distance, 0"));
+    for (double distance : {153., 170.})        // there are images that such a distance cannot have
+    {
+        const ToolResult wrong = runTool(inputs(f, floats(distance, 0.02) + " --distance-std=0"));
+        INFO(distance << wrong.out << wrong.err);
+        CHECK(wrong.code == (distance < 160. ? 2 : 1));
+        CHECK(mentions(wrong.err, "the images contradict --pane-points: set free, the window would be turned by"));
+        CHECK(mentions(wrong.err, format("away and not %g", distance)));
+    }
+    CHECK(mentions(runTool(inputs(f, floats(150, 0.02) + " --distance=150")).err, "--distance"));
+    CHECK(mentions(runTool(inputs(f, floats(150, 0.02) + " --free=distance")).err, "leave one out"));
+}
+
 TEST_CASE("The file of a lens serves for two cameras that have one like it", "[calib_tool]")
 {
     const TemporaryFolder f;

@@ -83,7 +83,8 @@ void checkAssumptions(const RigCalibration& c, Findings& f)
             f.assumed.push_back(index.sentence());
     if (isRound(window) && !(c.options.flags & GLASS_FREE_RADIUS) && c.options.std.radius == 0.)
         f.assumed.push_back("the radius, " + listOf({window.radius}) + " " + c.unit);
-    if (hasDifferentMedia(window) && !isRound(window) && !(c.options.flags & GLASS_FREE_DISTANCE) && c.options.std.distance == 0.)
+    if (hasDifferentMedia(window) && !isRound(window) && !(c.options.flags & GLASS_FREE_DISTANCE) && c.options.std.distance == 0.
+        && !c.options.areMarkersGiven())
         f.assumed.push_back("the distance, " + listOf({window.distance}) + " " + c.unit);
     for (int k = 0; k < c.data.cameraCount; k++)
         if (c.data.countPairs(k) && c.options.std.placement == 0.)

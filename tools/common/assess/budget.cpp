@@ -76,8 +76,13 @@ std::vector<Source> sourcesOfCamera(const RigCalibration& c, int k)
         if (own.has(column))
             add(name, given, column, count);
     };
-    addIf("normal", std.normal.text(" degrees", 180./CV_PI), own.normal, 3);
-    addIf("distance", std.isDistanceOpen ? "not given" : std.distance.text(length), own.distance, 1);
+    if (c.options.areMarkersGiven())    // they tell both together
+        add("normal and distance", c.options.placeOption, own.normal, 4);
+    else
+    {
+        addIf("normal", std.normal.text(" degrees", 180./CV_PI), own.normal, 3);
+        addIf("distance", std.isDistanceOpen ? "not given" : std.distance.text(length), own.distance, 1);
+    }
     addIf("radius", std.radius.text(length), own.radius, 1);
     addIf("centre", std.center.text(length), own.center, 3);
     addIf("bow", std.bow.text(" mm per m"), own.curvature, 1);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "bundle/bundle_findings.hpp"
+#include "bundle/start_covariance.hpp"
 #include "calibrate/estimated_parameters.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "calibrate/units.hpp"
@@ -199,6 +200,39 @@ BundleFindings findingsOf(const BundleStart& start, const GivenLengths& lengths,
     findings.maxRms = maxRms;
     findings.limitMet = !(maxRms > 0.) || fit.rms <= maxRms;
     return findings;
+}
+
+void checkPlaces(const BundleStart& start, const std::function<BundleAdjustment(const BundleStart&)>& adjust, BundleFindings& findings)
+{
+    const double MANY = 5.;
+    if (start.placeOption.empty())
+        return;
+    BundleStart freed = start;
+    forget({"normal", "distance"}, freed.rig, freed.covariance);
+    freed.flags &= ~GLASS_FIX_NORMAL;
+    for (const Ptr<RefractiveCamera>& camera : start.rig.cameras)
+        freed.flags |= hasDifferentMedia(camera->window()) ? (int)GLASS_FREE_DISTANCE : 0;
+    Fit free;
+    try
+    {
+        free = adjust(freed).fit;
+    }
+    catch (const Failure&)              // the matches alone tell nothing of it
+    {
+        return;
+    }
+    for (int c = 0; c < (int)free.rig.cameras.size(); c++)
+    {
+        const ParameterColumns at = columnsOf(free.rig, c);
+        const Rect place(at.normal, at.normal, 4, 4);
+        const GlassWindow given = start.rig.cameras[c]->window(), now = free.rig.cameras[c]->window();
+        const double apart = deviationsBetween(given, Mat(start.covariance(place)), now, Mat(free.covariance(place)));
+        if (free.rig.ownsWindow(c) && apart > MANY)
+            findings.contradictions.push_back(format("the matches contradict %s of camera %d's window by %.0f standard deviations: set "
+                "free, it would be turned by %.2g degrees and %s away and not %.5g; was all measured in the camera's frame, and on the face "
+                "towards it?", start.placeOption.c_str(), c + 1, apart, placeChange(given, now),
+                plusMinus(now.distance, std::sqrt(free.covariance.at<double>(at.distance, at.distance))).c_str(), given.distance));
+    }
 }
 
 std::string explanationOf(const std::vector<std::string>& free, double sigma,

@@ -42,6 +42,10 @@ struct BundleFindings
 BundleFindings findingsOf(const BundleStart& start, const GivenLengths& lengths, const BundleAdjustment& adjustment, double knownSigma,
                           double maxRms);
 
+/** What was said of where windows are, if that was not the file: against what the matches tell without it.
+@param adjust the adjustment from another start; may throw Failure */
+void checkPlaces(const BundleStart& start, const std::function<BundleAdjustment(const BundleStart&)>& adjust, BundleFindings& findings);
+
 /** Which of what may change in a rig explains a contradiction, each freed alone beside what is free: the best, and those that are
 as good, with "or". Empty: none does.
 @param sigma the noise as it is

@@ -56,7 +56,7 @@ GivenWindow givenWindow(const BundleOptions& options, const Calibration& file)
         flags |= name == NONE ? 0 : flagOf(name);
     const GivenWindow given = options.window.of(flags, file.channel);
     const bool needsDistance = !isRound(given.window) && hasDifferentMedia(given.window);
-    if (needsDistance && !options.window.isDistanceSaid())
+    if (needsDistance && !options.window.isDistanceSaid() && !options.places.areOfMarkers())
         throw Failure("--distance is needed, from the camera's centre of projection to the window, as on its other side is another medium: "
                       "a ruler will do (--distance-std says how well it is known)");
     return given;
@@ -89,26 +89,29 @@ void takeWindows(const BundleOptions& options, const std::string& path, Calibrat
         camera.camera = copyWithWindow(camera.camera, given.window);
 }
 
-//! A start from there; how well they are known is for the covariance.
-void takeNormals(const BundleOptions& options, const std::string& path, Calibration& file)
+//! A start from there; how well they are known is for the covariance. @return of each camera; empty: not said
+std::vector<GivenPlace> takePlaces(const BundleOptions& options, const std::string& path, Calibration& file)
 {
-    if (!options.normals.isSaid())
-        return;
+    const std::string option = options.places.option();
+    const std::vector<GivenPlace> places = options.places.of((int)file.cameras.size(), file.windows);
+    if (places.empty())
+        return places;
     if (!file.covariance.empty())
-        throw Failure("--normal is for a start of nominal values: '" + path + "' has a covariance, which says how well its normals are "
+        throw Failure(option + " is for a start of nominal values: '" + path + "' has a covariance, which says how well its windows are "
                       "known; leave it out, or free them (--free=normal)");
-    if (contains(options.free, "normal"))
-        throw Failure("--free=normal says that the matches alone tell the normals, and --normal what is known of them: leave one out");
-    const bool isShared = !file.windows.empty() && std::equal(file.windows.begin() + 1, file.windows.end(), file.windows.begin());
-    const std::vector<cv::Vec3d> normals = options.normals.of((int)file.cameras.size(), isShared);
+    for (const char* const name : {"normal", "distance"})
+        if (contains(options.free, name) && (options.places.areOfMarkers() || name == std::string("normal")))
+            throw Failure(std::string("--free=") + name + " says that the matches alone tell it, and " + option + " what is known of it: "
+                          "leave one out");
     for (size_t c = 0; c < file.cameras.size(); c++)
     {
         GlassWindow window = file.cameras[c].camera->window();
         if (isRound(window))
-            throw Failure("--normal is of flat windows, and '" + path + "' has a camera behind a " + nameOfShape(window));
-        window.normal = normals[std::min(c, normals.size() - 1)];
+            throw Failure(option + " is of flat windows, and '" + path + "' has a camera behind a " + nameOfShape(window));
+        places[c].putInto(window);
         file.cameras[c].camera = copyWithWindow(file.cameras[c].camera, window);
     }
+    return places;
 }
 
 //! What is free where nothing is said: of a rig of nominal values, what a calibration is for.
@@ -125,7 +128,7 @@ std::vector<std::string> freeOf(const Calibration& file, const RigModel& rig, co
     if (!options.free.empty() || !file.covariance.empty())
         return options.free;
     std::vector<std::string> free = {"extrinsics"};
-    if (!options.noWindow && !options.normals.isSaid())
+    if (!options.noWindow && !options.places.isSaid())
         for (const std::string& place : placesOf(rig))
             free.insert(free.end() - 1, place);
     return free;
@@ -182,14 +185,14 @@ GivenStd stdOf(const GlassWindow& window, const RigModel& rig, const BundleOptio
 {
     GivenValues given = givenValuesOf(window, options, file);
     given.equalMedia = !hasDifferentMedia(window);
-    given.distance = !given.equalMedia;
+    given.distance = !given.equalMedia || options.places.areOfMarkers();
     given.shape = window.shape;
     for (const cv::Ptr<RefractiveCamera>& camera : rig.cameras)
         given.others.push_back(camera->window().shape);
     given.millimetre = millimetre;
     given.flags = flags;
     GivenStd std = options.std.of(given);
-    std.normal = options.normals.std();
+    std.normal = options.places.normalStd();
     if (options.window.isSaid())
         options.window.requireBow(std, flags);
     return std;
@@ -235,8 +238,9 @@ std::vector<std::string> freeNames()
 BundleStart startOf(Calibration file, const std::string& path, const BundleOptions& options)
 {
     takeWindows(options, path, file);
-    takeNormals(options, path, file);
+    const std::vector<GivenPlace> places = takePlaces(options, path, file);
     BundleStart start;
+    start.placeOption = places.empty() ? "" : options.places.option();
     start.rig = modelOf(file).clone();
     start.rig.windows = file.windows;
     start.free = freeOf(file, start.rig, options);
@@ -252,6 +256,9 @@ BundleStart startOf(Calibration file, const std::string& path, const BundleOptio
         const auto std = [&](const GlassWindow& window) { return stdOf(window, start.rig, options, file, millimetre, start.flags); };
         if (!options.noWindow)
             start.covariance = covarianceOfGiven(std, start.flags, start.rig);
+        for (int c = 0; c < (int)places.size(); c++)
+            if (start.rig.ownsWindow(c) && places[c].tellsDistance())
+                places[c].addTo(start.rig.cameras[c]->window(), columnsOf(start.rig, c), start.covariance);
         return start;
     }
     if (options.std.isSaid())

@@ -5,7 +5,7 @@
 #define REFRACT_TOOLS_BUNDLE_START_HPP
 
 #include "bundle/matches.hpp"
-#include "calibrate/given_normals.hpp"
+#include "calibrate/given_places.hpp"
 #include "calibrate/given_window.hpp"
 
 /* What a bundle adjustment starts from, and what is known beforehand. */
@@ -16,7 +16,7 @@ struct BundleOptions
     std::vector<std::string> free;      //!< --free; empty: not said
     GivenWindowOptions window;          //!< of a start that has none
     GivenStdOptions std;
-    GivenNormals normals;               //!< of flat windows, where the file does not know
+    GivenPlaces places;                 //!< of flat windows, where the file does not know
     std::string unit;                   //!< of lengths; empty: not said
     bool noWindow = false;
 };
@@ -27,6 +27,7 @@ struct BundleStart
     int flags = 0;                      //!< what the matches alone must tell
     cv::Mat covariance;                 //!< of what is estimated within what is known of it; in the order of calibrateGlassRig's
     std::vector<std::string> free;      //!< names of what the flags say
+    std::string placeOption = {};       //!< what said where windows are; empty: the file
 };
 
 //! All parameters of a rig, in the order of its covariance.

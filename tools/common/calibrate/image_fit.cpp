@@ -98,11 +98,12 @@ int countPriors(const RigModel& rig)
         const Mat covariance = rig.known[c].covariance;
         const int lens = rig.known[c].lens.rows;
         const bool ownsWindow = rig.ownsWindow((int)c);
-        for (int i = 0; i < covariance.rows && (i < lens || ownsWindow); i++)
-            count += covariance.at<double>(i, i) > 0;
         const ParameterColumns at = columnsOf(*rig.cameras[c]);
-        if (ownsWindow && covariance.rows > lens && at.has(at.normal) && covariance.at<double>(at.normal, at.normal) > 0)
-            count--;                // a direction of three numbers has two
+        const auto isKnown = [&](int i) { return covariance.at<double>(i, i) > 0; };
+        for (int i = 0; i < covariance.rows && (i < lens || ownsWindow); i++)
+            count += isKnown(i) && !(i >= at.normal && i < at.normal + 3);
+        if (ownsWindow && covariance.rows > lens && at.has(at.normal) && (isKnown(at.normal) || isKnown(at.normal + 1)))
+            count += 2;                 // a direction of three numbers has two
     }
     return count;
 }

@@ -198,19 +198,22 @@ KnownCamera knownOf(const RefractiveCamera& camera, const RigOptions& options, i
     KnownCamera known{camera.lensParameters(), options.windowOf(c), Mat()};
     // Without a covariance the lens of a file is exact, unless the caller wants it free.
     const bool lensKnown = options.known[c] && !(options.knownCovariance[c].empty() && (options.flags & GLASS_FREE_INTRINSICS));
-    if (!lensKnown && !options.std.ofWindow())
+    const bool windowKnown = options.std.ofWindow() || options.areMarkersGiven();
+    if (!lensKnown && !windowKnown)
         return known;
     known.covariance = Mat::zeros(lens, lens, CV_64F);
     if (!lensKnown)
         known.covariance.diag().setTo(NAN);         // nothing is known
     else if (!options.knownCovariance[c].empty())
         options.knownCovariance[c].copyTo(known.covariance);
-    if (!options.std.ofWindow())
+    if (!windowKnown)
         return known;
     const ParameterColumns at = columnsOf(camera);
     Mat covariance = Mat::zeros(at.end, at.end, CV_64F);
     known.covariance.copyTo(covariance(Rect(0, 0, lens, lens)));
     putVariances(options.std, at, covariance);
+    if (options.areMarkersGiven())
+        options.placeOf(c).addTo(camera.window(), at, covariance);
     known.covariance = covariance;
     return known;
 }
@@ -270,8 +273,8 @@ Mat targetCovarianceOf(const RigData& data, const RigModel& rig, const GivenStd&
 GlassWindow RigOptions::windowOf(int camera) const
 {
     GlassWindow own = window;
-    if (!normals.empty())
-        own.normal = normals[std::min((size_t)camera, normals.size() - 1)];
+    if (!places.empty())
+        placeOf(camera).putInto(own);
     return own;
 }
 

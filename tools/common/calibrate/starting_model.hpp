@@ -4,9 +4,10 @@
 #ifndef REFRACT_TOOLS_STARTING_MODEL_HPP
 #define REFRACT_TOOLS_STARTING_MODEL_HPP
 
-#include "calibrate/given_std.hpp"
+#include "calibrate/given_places.hpp"
 #include "calibrate/rig_data.hpp"
 #include "calibrate/rig_model.hpp"
+#include <algorithm>
 
 /* Initial values of a fit: the lens from a file or from the direct images, the windows as given, R and T from single views. */
 namespace tools {
@@ -24,10 +25,13 @@ struct RigOptions
     GivenIndex inner = {}, outer = {};                      //!< the same of the media
     Channel channel = BRIGHTNESS;                           //!< of colour images, in which the points were found
 
-    std::vector<cv::Vec3d> normals = {};                    //!< that are known within std.normal: of all cameras, or of each; empty: none
+    std::vector<GivenPlace> places = {};                    //!< that are known: of all cameras, or of each; empty: none
+    std::string placeOption = {};                           //!< which said them
 
     //! The window of a camera, as far as it is known.
     cv::refract::GlassWindow windowOf(int camera) const;
+    const GivenPlace& placeOf(int camera) const { return places[std::min((size_t)camera, places.size() - 1)]; }
+    bool areMarkersGiven() const { return !places.empty() && places[0].tellsDistance(); }
     bool hasMaterials() const;                              //!< that are named
 };
 

@@ -26,8 +26,8 @@ CalibrationInput oneCamera(const CalibrationInput& input, int camera)
     one.data.imageSize[0] = input.data.imageSize[camera];
     one.options.known[0] = input.options.known[camera];
     one.options.knownCovariance[0] = input.options.knownCovariance[camera];
-    if (one.options.normals.size() > 1)
-        one.options.normals = {input.options.normals[camera]};
+    if (one.options.places.size() > 1)
+        one.options.places = {input.options.places[camera]};
     one.options.windows.clear();
     one.options.flags &= ~GLASS_USE_POSES;      // they are of camera 1
     one.data.views.clear();

@@ -201,6 +201,7 @@ std::vector<Cause> causesOf(const RigData& data, const RigOptions& options, cons
     const FittedRig rig{data, options, fit};
     std::vector<Cause> causes;
     addValues(rig, causes);
+    addKnownPlaces(rig, causes);
     addWedges(rig, causes);
     addBows(rig, causes);
     addMotion(rig, causes);

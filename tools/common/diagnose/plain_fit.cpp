@@ -23,6 +23,8 @@ const double CLEAN = 1.3;               // and no more than this times what each
 RigOptions exactly(RigOptions options)
 {
     options.std = GivenStd();
+    for (GivenPlace& place : options.places)
+        place.covariance = Matx44d::zeros();
     options.window.wedge.clear();
     if (options.window.shape == WINDOW_BENT)
         options.window.shape = WINDOW_FLAT;

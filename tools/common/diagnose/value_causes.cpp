@@ -19,6 +19,8 @@ namespace tools {
 
 namespace {
 
+const double DEGREES = 180./CV_PI;
+
 double sumOf(const Relaxed& found, const std::vector<int>& numbers)
 {
     const VectorXd values = toVector(found.glass);
@@ -50,8 +52,8 @@ std::vector<GivenValue> givenValues(const RigOptions& options)
         {GLASS_FREE_THICKNESS, "thickness", "--thickness", layers, window.thickness,
          std::vector<double>(window.thickness.size(), options.std.thickness), [](const ParameterColumns& at) { return at.thickness; }},
         {GLASS_FREE_INDEX, "index", "--index", layers, window.index, indices, [](const ParameterColumns& at) { return at.index; }},
-        {GLASS_FREE_DISTANCE, "distance", "--distance", !equalMedia && !round, {window.distance}, {options.std.distance},
-         [](const ParameterColumns& at) { return at.distance; }},
+        {GLASS_FREE_DISTANCE, "distance", "--distance", !equalMedia && !round && !options.areMarkersGiven(), {window.distance},
+         {options.std.distance}, [](const ParameterColumns& at) { return at.distance; }},
         {GLASS_FREE_RADIUS, "radius", "--radius", round, {window.radius}, {options.std.radius},
          [](const ParameterColumns& at) { return at.radius; }},
         {GLASS_FREE_OUTER_INDEX, "index of the scene's medium", "--outer-index", !equalMedia, {window.outerIndex},
@@ -133,6 +135,28 @@ void addValues(const FittedRig& rig, std::vector<Cause>& causes)
         for (int c : owners)
             if (owners.size() > 1 && given.flag != GLASS_FREE_OUTER_INDEX)      // there is one medium
                 causes.push_back(valueCause(rig, given, {c}));
+    }
+}
+
+void addKnownPlaces(const FittedRig& rig, std::vector<Cause>& causes)
+{
+    for (int c : rig.options.places.empty() ? std::vector<int>() : rig.windowOwners())
+    {
+        const GivenPlace given = rig.options.placeOf(c);
+        const ParameterColumns at = columnsOf(rig.fit.rig, c);
+        std::vector<Shift> freed;
+        for (const Vec3d& axis : tangentsOf(given.normal))
+            freed.push_back({{{at.normal, axis[0]}, {at.normal + 1, axis[1]}, {at.normal + 2, axis[2]}}});
+        const bool freesDistance = given.tellsDistance() && hasDifferentMedia(rig.options.window);
+        if (freesDistance)
+            freed.push_back({{{at.distance, 1.}}});
+        const std::string contradicted = "the images contradict " + rig.options.placeOption + ofWindow(rig, c) + ": set free, ";
+        causes.push_back({format("known place %d", c), freed, [=](const Relaxed& found, double deviations) {
+            const GlassWindow window = found.glass.cameras[c]->window();
+            const double turned = DEGREES*std::acos(std::min(1., window.normal.dot(given.normal)));
+            return contradicted + format("the window would be turned by %.3g degrees", turned)
+                + (freesDistance ? " and " + plusMinus(window.distance, stdOfSum(found, {at.distance}))
+                       + format(" away and not %.5g", given.distance) : std::string()) + howSure(deviations); }});
     }
 }
 

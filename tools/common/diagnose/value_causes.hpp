@@ -12,6 +12,9 @@ namespace tools {
 //! Thickness, index, distance, radius, medium: all windows together, as one option gives them; and each alone.
 void addValues(const FittedRig& rig, std::vector<Cause>& causes);
 
+//! What is known of where a flat window is: its normal, and its distance if markers tell it.
+void addKnownPlaces(const FittedRig& rig, std::vector<Cause>& causes);
+
 //! The faces of all layers of one window; images tell the sum, which the first layer stands for.
 void addWedges(const FittedRig& rig, std::vector<Cause>& causes);
 

@@ -58,6 +58,19 @@ void addLayers(const RigCalibration& c, GivenRows& rows)
         rows.add("wedge of each layer", "0'", std.wedge, "'", 1./ARC_MINUTE);
 }
 
+//! Of a flat window, with what the markers on it tell and what they share.
+void addPlace(const RigCalibration& c, const GivenPlace& place, GivenRows& rows)
+{
+    const GivenStd& std = c.options.std;
+    const std::string source = place.tellsDistance() ? c.options.placeOption : "";
+    const cv::Vec3d n = place.normal;
+    rows.add("normal", format("(%.4g, %.4g, %.4g)", n[0], n[1], n[2]), Std(std::hypot(std.normal, place.normalStd()), source), " degrees",
+             180./CV_PI);
+    if (place.tellsDistance() && hasDifferentMedia(c.options.window))
+        rows.add("distance to the window", format("%.5g %s", place.distance, c.unit.c_str()),
+                 Std(std::hypot(std.distance, place.distanceStd()), source), " " + c.unit);
+}
+
 //! Of the first surface.
 void addShape(const RigCalibration& c, GivenRows& rows)
 {
@@ -65,14 +78,14 @@ void addShape(const RigCalibration& c, GivenRows& rows)
     const GivenStd& std = c.options.std;
     if (isRound(window) && !(c.options.flags & GLASS_FREE_RADIUS))
         rows.add("radius of the inner face", format("%g %s", window.radius, c.unit.c_str()), std.radius, " " + c.unit);
-    for (const cv::Vec3d& n : c.options.normals)
-        rows.add("normal", format("(%.4g, %.4g, %.4g)", n[0], n[1], n[2]), std.normal, " degrees", 180./CV_PI);
+    for (const GivenPlace& place : c.options.places)
+        addPlace(c, place, rows);
     if (std.center > 0.)
         rows.add("centre", format("(%g, %g, %g) %s", window.center[0], window.center[1], window.center[2], c.unit.c_str()), std.center,
                  " " + c.unit);
     if (window.shape == WINDOW_BENT && !(c.options.flags & GLASS_FREE_CURVATURE))
         rows.add("bow", "0 mm per m", std.bow, " mm per m");
-    if (!isRound(window) && hasDifferentMedia(window) && !(c.options.flags & GLASS_FREE_DISTANCE))
+    if (!isRound(window) && hasDifferentMedia(window) && !(c.options.flags & GLASS_FREE_DISTANCE) && !c.options.areMarkersGiven())
         rows.add("distance to the window", format("%g %s", window.distance, c.unit.c_str()), std.distance, " " + c.unit);
 }
 
