@@ -79,7 +79,7 @@ void addOptions(OptionParser& parser, Options& o)
     parser.add("start.yml", o.start, "the rig to start from").required();
     const Option points = parser.add("--points", o.points, "what the cameras saw: [image,]id,u1,v1,u2,v2,...");
     const Option colmap = parser.add("--colmap", o.survey.model, "or a folder with a model of COLMAP, of raw images").excludes(points);
-    o.origin.addTo(parser, points);
+    addYFrom(parser, o.origin.yFrom).needs(points);
     parser.add("--lengths", o.lengths, "known distances between points: [image,]id1,id2,length,std");
     parser.add("--free", o.bundle.free, "what the matches alone must tell; none: nothing").delimiter(',')
         .check(isMember(freeNames()));

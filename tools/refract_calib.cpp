@@ -78,6 +78,7 @@ The same input gives the same bytes: outputs carry the time of the newest image 
 #include "console/outputs.hpp"
 #include "console/progress.hpp"
 #include "console/table.hpp"
+#include "formats/point_table.hpp"
 #include "report/digest.hpp"
 #include "report/plot.hpp"
 #include "report/report.hpp"
@@ -147,6 +148,7 @@ Options parseOptions(Command& command)
     OptionParser& parser = command.parser;
     o.target.addTo(parser, false);
     o.target.addDotsTo(parser);
+    addYFrom(parser, o.images.yFrom).needs(parser.get("--target"));
     o.images.addTo(parser, "images through the window: glob, corners.vnl or points.csv", "images without the window: the same");
     o.watch.addTo(parser);
     parser.get("--view-pattern").excludes(parser.get("--watch"));
@@ -173,8 +175,6 @@ Options parseOptions(Command& command)
         "valid (default: the brightness of all)").check(isMember({"red", "green", "blue"}));
     parser.add("--free", o.free, "what to estimate beside the normal, or the centre").delimiter(',')
         .check(isMember(namesOf(freeFlags())));
-    parser.add("--y-from", o.images.yFrom, "top or bottom: where y counts from in tables of DLTdv or Argus").needs(parser.get("--target"))
-        .check(isMember({"top", "bottom"}));
     parser.add("--image-size", o.imageSize, "WxH; needed for corners.vnl and points.csv, otherwise checked");
     Option unpaired = parser.addFlag("--unpaired", o.unpaired, "equal names are no pairs (a hand-held board)");
     parser.addFlag("--partial", o.target.partial, "a chessboard that may be partly out of view, or is cut at its edge: any piece "

@@ -31,6 +31,7 @@ static const char MANUAL[] = R"(Measures the points of a target, in the frame of
   refract_measure calib.yml IMAGE1 IMAGE2 --size=6x5 --square=39 --out=points.csv     two cameras or more: triangulation
   refract_measure calib.yml IMAGE --plane=0,0,1,600 --size=... --square=...           one camera: points on a plane
   refract_measure calib.yml IMAGE --size=... --square=...                             one camera: pose of the target
+  refract_measure calib.yml IMAGE1 IMAGE2 --target=points.csv                         a target of dots, as in refract_calib
   refract_measure calib.yml --points=pixels.csv --out=points.csv                      points that are no target
 
 IMAGE may be a quoted glob ('measure1/*.png'), a corners.vnl or a points.csv (view,x,y,z,u,v; then no target need be said);
@@ -121,10 +122,11 @@ void nameSingles(RigImages& sets)
             image.stem = name = name.empty() ? image.stem : name;
 }
 
-MeasuredView withIds(const View& view)
+//! As a target of dots calls them; else they are counted.
+MeasuredView withIds(const View& view, const Target* target)
 {
-    MeasuredView measured{view, {}};
-    for (size_t i = 0; i < view.objectPoints.size(); i++)
+    MeasuredView measured{view, target ? target->ids() : std::vector<std::string>()};
+    for (size_t i = measured.ids.size(); i < view.objectPoints.size(); i++)
         measured.ids.push_back(std::to_string(i));
     return measured;
 }
@@ -134,6 +136,7 @@ std::vector<MeasuredView> readImages(const Options& options, const Calibration& 
 {
     RigSources sources;
     sources.channel = calibration.channel;
+    sources.yFrom = options.origin.yFrom;
     PerCamera<cv::Size> sizes;
     std::copy(options.images.begin(), options.images.end(), sources.glass.begin());
     for (size_t c = 0; c < calibration.cameras.size(); c++)
@@ -147,7 +150,7 @@ std::vector<MeasuredView> readImages(const Options& options, const Calibration& 
     std::vector<MeasuredView> measured;
     for (const View& view : views)
         if (view.countGlass() > 1 || !options.triangulates())
-            measured.push_back(withIds(view));
+            measured.push_back(withIds(view, target));
     if (measured.empty() && options.images.size() == 2)
         throw Failure("no image of '" + options.images[0] + "' has the name of one of '" + options.images[1]
                       + "': images of one moment need equal names");
@@ -463,9 +466,10 @@ void addOptions(OptionParser& parser, Options& options)
 {
     parser.add("calib.yml", options.calibration, "what refract_calib wrote").required();
     parser.add("IMAGE", options.images, "of camera 1, of camera 2, ...");
-    const Option points = parser.add("--points", options.points, "image points that are no target, in place of images: id,u1,v1,u2,v2,...");
-    options.origin.addTo(parser, points);
+    parser.add("--points", options.points, "image points that are no target, in place of images: id,u1,v1,u2,v2,...");
     options.target.addTo(parser, false);
+    options.target.addDotsTo(parser);
+    addYFrom(parser, options.origin.yFrom);
     parser.add("--unit", options.unit, "unit of --square; what refract_calib had, or nothing")
         .check(isMember(unitNames()));
     options.conditions.addTo(parser);
@@ -484,7 +488,9 @@ void checkCombination(const Options& options, const Calibration& calibration)
     if (options.points.empty() == (images == 0))
         throw Failure("give images of the target, or --points=FILE");
     if (!options.points.empty() && options.target.given())
-        throw Failure("--points are those of no target: leave --size and --square out");
+        throw Failure("--points are those of no target: leave --size and --square, or --target, out");
+    if (!options.origin.yFrom.empty() && options.points.empty() && options.target.dots.empty())
+        throw Failure("--y-from is of tables of pixels: add --points=FILE, or --target=FILE of dots that they are of");
     if (images > cameras)
         throw Failure(format("'%s' has %s camera%s, but there are images of %s: calibrate ", options.calibration.c_str(),
                              cameras == 1 ? "one" : std::to_string(cameras).c_str(), cameras == 1 ? "" : "s",
@@ -500,7 +506,8 @@ void checkCombination(const Options& options, const Calibration& calibration)
     if (options.points.empty() && !options.target.given())
         for (const std::string& image : options.images)
             if (!image.empty() && fs::path(image).extension() != ".csv")
-                throw Failure("which target is in '" + image + "'? Give --size and --square, or --points=FILE for other points");
+                throw Failure("which target is in '" + image + "'? Give --size and --square, --target=FILE of dots, or --points=FILE "
+                              "for other points");
     if (!options.plane.empty())
         parsePlane(options.plane);
 }
@@ -521,7 +528,7 @@ int refract_measure_main(int argc, char** argv)
         if (target)
             requireSameUnit(calibration, target->square(), options.unit);
         checkCombination(options, calibration);
-        std::vector<std::string> inputs = {options.calibration, options.points, command.settings()};
+        std::vector<std::string> inputs = {options.calibration, options.points, options.target.dots, command.settings()};
         inputs.insert(inputs.end(), options.images.begin(), options.images.end());
         inputs.insert(inputs.end(), options.compareWith.begin(), options.compareWith.end());
         checkOutputs({{"--out", options.out, OUTPUT_TEXT}}, inputs);

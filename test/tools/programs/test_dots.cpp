@@ -5,6 +5,7 @@
 #include "../target/drawn_dots.hpp"
 #include "paths.hpp"
 #include "run_tool.hpp"
+#include "wand_scene.hpp"
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <filesystem>
@@ -140,6 +141,51 @@ TEST_CASE("refract_calib takes tables of pixels of any program, where --target s
     std::ofstream(f / "bad.csv") << "image,id,u1,v1\n1,p0,3,4\n1,q,5,6\n";
     const std::string both = " --glass=" + (f / "bad.csv") + " --glass2=" + (f / "bad.csv") + " --image-size=1280x1024";
     CHECK(mentions(calibrate(f, both).err, "line 3: --target has no point 'q'"));
+}
+
+TEST_CASE("refract_measure and refract_check take a target of dots, as refract_calib does", "[tools][dots]")
+{
+    const TemporaryFolder f;
+    const Tank tank(f);
+    scenes::Random random(4525);
+    writeDots(f / "dots.csv");
+    for (int c = 0; c < 2; c++)
+        for (int view = 0; view < 3; view++)
+        {
+            Vec3d r, t;
+            tank.moved(view, c, r, t);
+            imwrite(f / format("%c%d.png", "ab"[c], view), drawn_dots::picture(DOTS, 0.6, r, t, tank.cameras[c], random));
+        }
+    const std::string sources = " --glass='" + (f / "a*.png") + "' --glass2='" + (f / "b*.png") + "'";
+    const std::string target = " --target=" + (f / "dots.csv");
+    const ToolResult calibrated = calibrate(f, sources);
+    CAPTURE(scenes::seed(), calibrated.out, calibrated.err);
+    REQUIRE((calibrated.code == 0 || calibrated.code == 2));
+    const ToolResult m = runTool("refract_measure " + (f / "calib.yml") + " " + (f / "a1.png") + " " + (f / "b1.png") + target + " --out="
+                                 + (f / "points.csv"));
+    CAPTURE(m.out, m.err);
+    CHECK(m.code == 0);
+    const std::vector<wand::Row> rows = wand::rowsOf(f / "points.csv");
+    REQUIRE(rows.size() == DOTS.size());
+    Vec3d r, t;
+    tank.moved(1, 0, r, t);
+    Matx33d R;
+    Rodrigues(r, R);
+    int count = 0;
+    for (const wand::Row& row : rows)
+    {
+        if (std::isnan(row.X().x))
+            continue;
+        const int i = std::stoi(row.id.substr(1));          // p0, p1, ...
+        const Vec3d off = Vec3d(row.X()) - R*Vec3d(DOTS[i]) - t;
+        CHECK(std::abs(off[0]) < 5*row.fromEnd(4));
+        CHECK(std::abs(off[2]) < 5*row.fromEnd(2));
+        count++;
+    }
+    CHECK(count > (int)DOTS.size()/2);
+    CHECK(runTool("refract_check " + (f / "calib.yml") + sources + target).code == 0);
+    CHECK(mentions(runTool("refract_check " + (f / "calib.yml") + sources + target + " --size=6x5").err, "--size"));
+    CHECK(mentions(runTool("refract_measure " + (f / "calib.yml") + " --points=" + (f / "x.csv") + target).err, "leave --size and"));
 }
 
 TEST_CASE("openptv_cavity: two cameras of a real tank in one command, from one image each", "[tools][dots][real]")

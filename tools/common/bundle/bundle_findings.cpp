@@ -229,8 +229,8 @@ void checkPlaces(const BundleStart& start, const std::function<BundleAdjustment(
         const double apart = deviationsBetween(given, Mat(start.covariance(place)), now, Mat(free.covariance(place)));
         if (free.rig.ownsWindow(c) && apart > MANY)
             findings.contradictions.push_back(format("the matches contradict %s of camera %d's window by %.0f standard deviations: set "
-                "free, it would be turned by %.2g degrees and %s away and not %.5g; was all measured in the camera's frame, and on the face "
-                "towards it?", start.placeOption.c_str(), c + 1, apart, placeChange(given, now),
+                "free, it would be turned by %.2g degrees and %s away and not %.5g; was all measured in the camera's frame, and on the "
+                "face towards it?", start.placeOption.c_str(), c + 1, apart, placeChange(given, now),
                 plusMinus(now.distance, std::sqrt(free.covariance.at<double>(at.distance, at.distance))).c_str(), given.distance));
     }
 }

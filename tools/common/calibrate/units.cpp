@@ -48,7 +48,7 @@ void requireSameUnit(const Calibration& calibration, double square, const std::s
     if (!unit.empty() && !calibration.unit.empty() && unit != calibration.unit)
         throw Failure("--unit=" + unit + ": the calibration's lengths are in " + calibration.unit + ", so give --square in "
                       + calibration.unit + " too");
-    if (!unit.empty() || !(calibration.square > 0))
+    if (!unit.empty() || !(calibration.square > 0) || !(square > 0))       // a target of dots has no squares
         return;
     const double ratio = square/calibration.square;
     if ((ratio > OTHER_BOARD || ratio < 1./OTHER_BOARD) && isRatioOfUnits(ratio))

@@ -6,6 +6,7 @@
 #include "calibrate/given_std.hpp"
 #include "calibrate/units.hpp"
 #include "console/cli.hpp"
+#include "formats/point_table.hpp"
 #include <filesystem>
 
 namespace tools {
@@ -30,8 +31,8 @@ void requireOneKind(const CheckOptions& o)
     if (!o.isOfScene())
     {
         require(!o.images.glass[0].empty(), "--glass");
-        require(!o.target.size.empty(), "--size");
-        require(o.target.square > 0., "--square");
+        require(o.target.given(), "--size");
+        require(!o.target.dots.empty() || o.target.square > 0., "--square");
         return;
     }
     if (o.images.cameraCount() > 0 || o.target.given() || o.placement > 0.)
@@ -55,6 +56,8 @@ void CheckOptions::addTo(OptionParser& parser)
     target.addTo(parser, true);
     parser.add("--unit", unit, "unit of --square; what refract_calib had, or nothing")
         .check(isMember(unitNames()));
+    target.addDotsTo(parser);
+    addYFrom(parser, images.yFrom).needs(parser.get("--target"));
     images.addTo(parser, "new images through the window: glob, corners.vnl or points.csv", "new images without the window");
     for (int c = 0; c < MAX_CAMERAS; c++)
     {
@@ -105,7 +108,7 @@ std::string CheckOptions::pageFile() const
 std::vector<std::string> CheckOptions::inputs() const
 {
     std::vector<std::string> result = images.all();
-    result.push_back(calibration);
+    result.insert(result.end(), {calibration, target.dots});
     result.insert(result.end(), scene.begin(), scene.end());
     return result;
 }

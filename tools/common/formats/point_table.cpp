@@ -270,10 +270,10 @@ CsvTable readFilesOfCameras(const std::string& pattern)
 
 } // namespace
 
-void PixelOrigin::addTo(OptionParser& parser, const Option& points)
+Option addYFrom(OptionParser& parser, std::string& yFrom)
 {
-    parser.add("--y-from", yFrom, "top or bottom: where y counts from in --points of DLTdv or Argus").check(isMember({"top", "bottom"}))
-        .needs(points);
+    return parser.add("--y-from", yFrom, "top or bottom: where y counts from in tables of DLTdv or Argus")
+        .check(isMember({"top", "bottom"}));
 }
 
 CsvTable readPointTable(const std::string& path, const std::vector<std::string>& required, const std::string& what,

@@ -5,20 +5,17 @@
 #define REFRACT_TOOLS_POINT_TABLE_HPP
 
 #include "console/csv.hpp"
+#include "console/options.hpp"
 
 namespace tools {
-
-class Option;
-class OptionParser;
 
 //! What tables of other programs leave open.
 struct PixelOrigin
 {
     std::string yFrom;                  //!< --y-from: "top" or "bottom"; empty: not said
     std::vector<cv::Size> images;       //!< of the cameras; y from the bottom needs their heights
-
-    void addTo(OptionParser& parser, const Option& points);     //!< only with these
 };
+Option addYFrom(OptionParser& parser, std::string& yFrom);
 
 /** A table of points that several cameras saw: [image,]id,u1,v1,u2,v2,..., one row a point; or what other programs write, told by its
 heading, which becomes the former (image is the frame; other columns are left out):
