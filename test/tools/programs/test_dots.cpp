@@ -143,6 +143,57 @@ TEST_CASE("refract_calib takes tables of pixels of any program, where --target s
     CHECK(mentions(calibrate(f, both).err, "line 3: --target has no point 'q'"));
 }
 
+TEST_CASE("refract_calib takes tables of which each camera has its own file", "[tools][dots]")
+{
+    const TemporaryFolder f;
+    const Tank tank(f);
+    std::ofstream dots(f / "dots.csv");
+    dots << "id,x,y,z\n";
+    for (size_t i = 0; i < DOTS.size(); i++)
+        dots << i << "," << DOTS[i].x << "," << DOTS[i].y << "," << DOTS[i].z << "\n";
+    dots.close();
+    for (int c = 0; c < 2; c++)
+    {
+        std::ofstream targets(f / format("cam%d.10001_targets", c + 1)), lab(f / format("lab%d.csv", c));
+        const std::vector<Point2d> pixels = tank.pixels(1, c);
+        targets << DOTS.size() << "\n";
+        lab << "scorer" << std::string(3*DOTS.size(), ',') << "\nbodyparts";
+        for (size_t i = 0; i < DOTS.size(); i++)
+        {
+            targets << format("%zu %.9f %.9f 9 3 3 900 %zu\n", i, pixels[i].x + 0.5, pixels[i].y + 0.5, i);
+            lab << "," << i << "," << i << "," << i;
+        }
+        lab << "\ncoords";
+        for (size_t i = 0; i < DOTS.size(); i++)
+            lab << ",x,y,likelihood";
+        for (int view = 0; view < 2; view++)
+        {
+            lab << "\n" << view;
+            for (const Point2d& p : tank.pixels(view, c))
+                lab << format(",%.9f,%.9f,0.99", p.x, p.y);
+        }
+    }
+    for (const char* const pattern : {"cam%d.10001_targets", "lab%d.csv"})
+    {
+        const std::string sources = " --glass=" + (f / pattern) + " --glass2=" + (f / pattern) + " --image-size=1280x1024";
+        const ToolResult r = calibrate(f, sources);
+        CAPTURE(pattern, r.out, r.err);
+        REQUIRE((r.code == 0 || r.code == 2));
+        for (int c = 0; c < 2; c++)
+            CHECK(degreesOff(f, tank, c) < 1e-3);
+        // The other tools measure the same target by the same tables.
+        const ToolResult m = runTool("refract_measure " + (f / "calib.yml") + " " + (f / pattern) + " " + (f / pattern) + " --target="
+                                     + (f / "dots.csv") + " --out=" + (f / "points.csv"));
+        CAPTURE(m.out, m.err);
+        CHECK(m.code == 0);
+        CHECK(mentions(readFile(f / "points.csv"), ",11,"));
+    }
+    CHECK(mentions(calibrate(f, " --glass=" + (f / "cam%d.none") + " --glass2=" + (f / "cam%d.none") + " --image-size=9x9").err,
+                   "there is no file"));
+    CHECK(mentions(runTool("refract_calib --glass=" + (f / "lab%d.csv") + " --image-size=1280x1024 --camera=" + (f / "k1.yml")
+                           + " --outer-index=1.333 --out=" + (f / "o.yml")).err, "--target=FILE must say where these are"));
+}
+
 TEST_CASE("refract_measure and refract_check take a target of dots, as refract_calib does", "[tools][dots]")
 {
     const TemporaryFolder f;

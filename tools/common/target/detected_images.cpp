@@ -64,11 +64,25 @@ void requireInside(const std::string& path, const std::string& image, const std:
 
 std::string extensionOf(const std::string& path) { return std::filesystem::path(path).extension().string(); }
 
+//! Tables of which each camera has its own: %d stands for its number.
+bool areFilesOfCameras(const std::string& source) { return source.find("%d") != std::string::npos; }
+
 //! Not the target's: x, y, z are in it.
 bool hasCoordinates(const std::string& path)
 {
+    if (areFilesOfCameras(path))
+        return false;
     const std::vector<std::string> heading = headingOf(path);
     return std::find(heading.begin(), heading.end(), "view") != heading.end();
+}
+
+//! The file that has this camera's points.
+std::string fileOf(const ImageSource& source)
+{
+    if (!areFilesOfCameras(source.source))
+        return source.source;
+    const std::vector<std::string> files = numberedFiles(source.source);
+    return source.camera < (int)files.size() ? files[source.camera] : source.source;       // what is missing, the reader says
 }
 
 DetectedImages imagesOfPointFile(const ImageSource& source, const Target* target)
@@ -78,9 +92,12 @@ DetectedImages imagesOfPointFile(const ImageSource& source, const Target* target
     if (imageSize.empty())
         throw Failure("'" + path + "' does not say how large the images are: add --image-size=WIDTHxHEIGHT");
     DetectedImages set;
-    set.files = {path};
+    set.files = {fileOf(source)};
     set.imageSize = imageSize;
-    if (extensionOf(path) == ".csv" && target && target->pattern() == Target::DOTS && !hasCoordinates(path))
+    const bool hasNames = target && target->pattern() == Target::DOTS;
+    if (areFilesOfCameras(path) && !hasNames)
+        throw Failure("'" + path + "' has pixels of points, and --target=FILE must say where these are");
+    if (hasNames && extensionOf(path) != ".vnl" && !hasCoordinates(path))
         set.images = readPointTableOf(*target, path, source.camera, imageSize, source.yFrom);
     else if (extensionOf(path) == ".csv")
         set.images = readPointsCsv(path);
@@ -105,7 +122,9 @@ void requireDistinctStems(const DetectedImages& set, const std::string& source)
 
 bool isPointFile(const std::string& source)
 {
-    return extensionOf(source) == ".vnl" || extensionOf(source) == ".csv";
+    const std::string OPENPTV = "_targets";
+    const bool areTargets = source.size() > OPENPTV.size() && source.substr(source.size() - OPENPTV.size()) == OPENPTV;
+    return areTargets || areFilesOfCameras(source) || extensionOf(source) == ".vnl" || extensionOf(source) == ".csv";
 }
 
 std::vector<DetectedImages> readDetectedImages(const std::vector<ImageSource>& sources, const Target* target, bool quiet, Channel channel)
@@ -114,7 +133,7 @@ std::vector<DetectedImages> readDetectedImages(const std::vector<ImageSource>& s
     size_t count = 0;
     for (const ImageSource& source : sources)
     {
-        if (!target && extensionOf(source.source) != ".csv")
+        if (!target && extensionOf(source.source) != ".csv" && !areFilesOfCameras(source.source))
             throw Failure("'" + source.source + "' shows a target that must be known: give --size and --square (only a points.csv "
                           "brings its own coordinates)");
         files.push_back(isPointFile(source.source) ? std::vector<std::string>() : expandGlob(source.source));
