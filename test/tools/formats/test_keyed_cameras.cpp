@@ -159,6 +159,9 @@ TEST_CASE("What a file of names and values cannot mean is refused in a sentence"
     CHECK_THAT(says("K: " + K + "\nD: none\n"), Catch::Contains("its D are no numbers"));
     CHECK_THAT(says("K: [[100, 7, 50], [0, 100, 50], [0, 0, 1]]\nD: [0, 0, 0, 0, 0]\n"), Catch::Contains("its lens cannot be one"));
     CHECK_THAT(says("name: 5\nother: [1, 2]\n"), Catch::Contains("looks like YAML, but there is no camera in it"));
+    CHECK_THAT(says("{\"cameraType\": 0, \"distortionCoeff\": [-0.11, 0."), Catch::Contains("looks like JSON, but parse error at line 1"));
+    CHECK_THAT(says("cam0:\n  camera_model: pinhole\n  intrinsics: [461.6, 46"), Catch::Contains("looks like YAML, but line 3: a bracket"));
+    CHECK_NOTHROW(says("pt1_cam1_X,pt1_cam1_Y\n1,2\n"));      // is told by what reads refract's own files
     CHECK_NOTHROW(says("--- [\na\n"));             // a bracket in what is skipped
     CHECK_NOTHROW(says("% K = [1210 0 639\n%  0 1190 481\nhello\n"));
     CHECK_THAT(says("a:\n  K: " + K + "\n  D: [0, 0, 0, 0, 0]\n  R: [[1, 0, 0], [0, 1, 0], [0, 0, 1]]\n  t: [0, 0, 0]\nb:\n  K: " + K

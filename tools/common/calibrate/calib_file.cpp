@@ -198,7 +198,8 @@ Rig readRig(const std::string& filename)
     }
     catch (const cv::Exception& e)
     {
-        throw Failure(e.err + ". If it is what refract_calib wrote, was it edited or cut short? Calibrate again");
+        throw Failure(e.err + ". If it is what refract_calib wrote, was it edited or cut short? Calibrate again. (Of other programs it is "
+                      "no file of cameras that is known here: doc/formats.md)");
     }
     requireFew(rig, filename);
     return rig;

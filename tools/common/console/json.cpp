@@ -134,11 +134,13 @@ Json Json::read(std::istream& in)
 {
     try
     {
-        return JsonConverter::jsonOf(Tree::parse(in));
+        const bool throws = true, skipsComments = true;         // as cv::FileStorage
+        return JsonConverter::jsonOf(Tree::parse(in, nullptr, throws, skipsComments));
     }
     catch (const Tree::exception& e)
     {
-        throw Error(e.what());
+        const std::string what = e.what();          // "[json.exception.parse_error.101] parse error at line 1, ..."
+        throw Error(what.substr(what.find("] ") == std::string::npos ? 0 : what.find("] ") + 2));
     }
 }
 

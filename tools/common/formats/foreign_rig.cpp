@@ -112,6 +112,13 @@ bool isOwn(const Json& file)
     throw Failure("'" + file.name + "' looks like " + format + ", but " + what);
 }
 
+//! "word:" or "word: value"
+bool hasKey(const std::string& line)
+{
+    const size_t end = line.find_first_of(": \t");
+    return end > 0 && end != std::string::npos && line[end] == ':' && (end + 1 == line.size() || std::strchr(" \t\r", line[end + 1]));
+}
+
 //! Nothing: the module is to read it, and to say what it thinks of it.
 std::optional<ForeignRig> readNotation(const ForeignFile& file, const Notation& notation)
 {
@@ -138,9 +145,10 @@ std::optional<ForeignRig> readNotation(const ForeignFile& file, const Notation& 
     }
     catch (const Json::Error& e)
     {
-        if (isStorage && format == notation.name)
-            return {};
-        if (format == std::string("YAML"))      // any text may look like that
+        // Any text may look like YAML, and cv::FileStorage's JSON has .Nan; but a text that is cut short was one.
+        const size_t last = file.bytes.find_last_not_of(" \t\r\n");
+        const bool isOne = format == "JSON" ? file.bytes[last] != '}' : !isStorage && hasKey(file.firstLine());
+        if (format == notation.name && notation.isOurs && !isOne)
             return {};
         refuse(file, format, e.what());
     }

@@ -63,7 +63,11 @@ FileStorage openStorage(const String& filename)
     {
         fs.open(filename, FileStorage::READ);
     }
-    catch (const std::exception& e)     // not only cv::Exception: std::length_error, too
+    catch (const cv::Exception& e)
+    {
+        CV_Error_(Error::StsParseError, ("%s is not YAML, XML or JSON that OpenCV reads (%s)", filename.c_str(), e.err.c_str()));
+    }
+    catch (const std::exception& e)     // std::length_error
     {
         CV_Error_(Error::StsParseError, ("%s is not YAML, XML or JSON that OpenCV reads (%s)", filename.c_str(), e.what()));
     }
