@@ -56,16 +56,11 @@ cv::Ptr<RefractiveCamera> makeCamera(const std::string& model, const cv::Matx33d
     if (fitting == places.end())
         throw Failure(format("its lens has %zu coefficients, more than OpenCV's model has", coefficients.size()));
     coefficients.resize(*fitting, 0.);
-    try
-    {
+    return possible("lens", [&] {
         const cv::Ptr<RefractiveCamera> camera = RefractiveCamera::createByName(model, cameraMatrix, coefficients);
         camera->setImageSize(size);
         return camera;
-    }
-    catch (const cv::Exception& e)
-    {
-        throw Failure("its lens cannot be one: " + e.err);
-    }
+    });
 }
 
 cv::Size imageSizeOf(double width, double height)
@@ -112,18 +107,13 @@ GlassWindow makePort(const std::string& type, const std::vector<double>& p)
         throw Failure("its port '" + type + "' is not known here: FLATPORT and DOMEPORT are");
     if (p.size() != 8)
         throw Failure(format("a port has 8 parameters, here are %zu", p.size()));
-    try
-    {
+    return possible("port", [&] {
         GlassWindow window = isDome ? GlassWindow::dome({p[0], p[1], p[2]}, p[3], p[4], p[6], p[7])
                                     : GlassWindow({p[0], p[1], p[2]}, p[4], p[6], p[3], p[7]);
         window.innerIndex = p[5];
         window.check();
         return window;
-    }
-    catch (const cv::Exception& e)
-    {
-        throw Failure("its port cannot be one: " + e.err);
-    }
+    });
 }
 
 } // namespace tools

@@ -4,11 +4,25 @@
 #ifndef REFRACT_TOOLS_LENS_MAKER_HPP
 #define REFRACT_TOOLS_LENS_MAKER_HPP
 
+#include "console/failure.hpp"
 #include <opencv2/refract.hpp>
 #include <string>
 #include <vector>
 
 namespace tools {
+
+//! What `make` makes of a file's numbers; Failure "its WHAT cannot be one" where the module refuses them.
+template<typename Make> auto possible(const std::string& what, const Make& make) -> decltype(make())
+{
+    try
+    {
+        return make();
+    }
+    catch (const cv::Exception& e)
+    {
+        throw Failure("its " + what + " cannot be one: " + e.err);
+    }
+}
 
 /** A camera without a window. @param model "opencv" or "fisheye"
 @param coefficients zeros may follow, where the model has fewer places

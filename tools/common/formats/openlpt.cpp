@@ -108,14 +108,7 @@ ForeignRig readOpenLpt(const ForeignFile& file)
     const Vec3d t = axes*Vec3d(sections.numbers("Translation Vector", 3).data());
     const auto camera = makeCamera("opencv", K, D, imageSizeOf(rowsColumns[1], rowsColumns[0]));
     if (model == "PINPLATE")
-        try
-        {
-            camera->setWindow(windowOf(sections, R, t));
-        }
-        catch (const cv::Exception& e)
-        {
-            throw Failure("its plate cannot be one: " + e.err);
-        }
+        possible("plate", [&] { camera->setWindow(windowOf(sections, R, t)); });
     ForeignRig rig;
     rig.add(camera, R, t);
     return rig;

@@ -133,18 +133,13 @@ ForeignRig readOpenPtv(const ForeignFile& file)
     const Vec3d glass = p.size() == WITH_GLASS ? Vec3d(p[18], p[19], p[20]) : Vec3d();
     const double toOrigin = cv::norm(glass);
     if (toOrigin > 0)
-        try
-        {
+        possible("glass", [&] {
             const Vec3d n = glass*(1./toOrigin);
             cv::refract::GlassWindow window(-(R*n), control.thickness, control.n2, n.dot(centre) - toOrigin - control.thickness,
                                             control.n3);
             window.innerIndex = control.n1;
             camera->setWindow(window);
-        }
-        catch (const cv::Exception& e)
-        {
-            throw Failure("its glass cannot be one: " + e.err);
-        }
+        });
     ForeignRig rig;
     rig.add(camera, R, -(R*centre));
     return rig;
