@@ -27,13 +27,6 @@ std::string modelIn(const std::string& line)
     return model;
 }
 
-struct FirstRecord
-{
-    uint64_t count;
-    int32_t id, model;
-    uint64_t width, height;
-};
-
 } // namespace
 
 bool isColmapText(const ForeignFile& file)
@@ -72,14 +65,11 @@ bool isColmapBinary(const ForeignFile& file)
     if (file.bytes.size() < FIRST)
         return false;
     ByteReader in(file.bytes);
-    FirstRecord r;
-    r.count = in.number<uint64_t>();
-    r.id = in.number<int32_t>();
-    r.model = in.number<int32_t>();
-    r.width = in.number<uint64_t>();
-    r.height = in.number<uint64_t>();
-    return r.count >= 1 && r.count < 1000000 && r.id >= 0 && !colmapModelName(r.model, parameters).empty() && r.width >= 1
-        && r.width <= LARGEST && r.height >= 1 && r.height <= LARGEST;
+    const uint64_t count = in.number<uint64_t>();
+    const int32_t id = in.number<int32_t>(), model = in.number<int32_t>();
+    const uint64_t width = in.number<uint64_t>(), height = in.number<uint64_t>();
+    return count >= 1 && count < 1000000 && id >= 0 && !colmapModelName(model, parameters).empty() && width >= 1 && width <= LARGEST
+        && height >= 1 && height <= LARGEST;
 }
 
 ForeignRig readColmapBinary(const ForeignFile& file)

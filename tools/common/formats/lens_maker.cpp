@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "formats/lens_maker.hpp"
+#include "formats/colmap_model.hpp"
 #include "console/failure.hpp"
 
 #include <algorithm>
@@ -15,10 +16,8 @@ using cv::refract::RefractiveCamera;
 
 namespace {
 
-const double CORNER = 0.5;      // COLMAP's pixel (0, 0) is a corner, not a centre
-
 //! Of COLMAP: its parameters are one or two focal lengths, the centre, and these coefficients.
-struct ColmapModel
+struct ColmapLens
 {
     int id;
     const char* name;
@@ -26,7 +25,7 @@ struct ColmapModel
     const char* lens;           //!< null: OpenCV has none like it
 };
 
-const ColmapModel COLMAP_MODELS[] = {
+const ColmapLens COLMAP_MODELS[] = {
     {0, "SIMPLE_PINHOLE", 1, 0, "opencv"}, {1, "PINHOLE", 2, 0, "opencv"}, {2, "SIMPLE_RADIAL", 1, 1, "opencv"},
     {3, "RADIAL", 1, 2, "opencv"}, {4, "OPENCV", 2, 4, "opencv"}, {5, "OPENCV_FISHEYE", 2, 4, "fisheye"},
     {6, "FULL_OPENCV", 2, 8, "opencv"}, {7, "FOV", 2, 1, nullptr}, {8, "SIMPLE_RADIAL_FISHEYE", 1, 1, "fisheye"},
@@ -35,14 +34,14 @@ const ColmapModel COLMAP_MODELS[] = {
     {14, "SIMPLE_FISHEYE", 1, 0, "fisheye"}, {15, "FISHEYE", 2, 0, "fisheye"}, {16, "EUCM", 2, 2, nullptr},
     {17, "EQUIRECTANGULAR", 0, 0, nullptr}};     // width, height
 
-const ColmapModel* findColmapModel(const std::string& name)
+const ColmapLens* findColmapLens(const std::string& name)
 {
     const auto found = std::find_if(std::begin(COLMAP_MODELS), std::end(COLMAP_MODELS),
-                                    [&](const ColmapModel& m) { return m.name == name; });
+                                    [&](const ColmapLens& m) { return m.name == name; });
     return found == std::end(COLMAP_MODELS) ? nullptr : found;
 }
 
-size_t countOf(const ColmapModel& model) { return (size_t)(model.focals + 2 + model.coefficients); }
+size_t countOf(const ColmapLens& model) { return (size_t)(model.focals + 2 + model.coefficients); }
 
 } // namespace
 
@@ -73,7 +72,7 @@ cv::Size imageSizeOf(double width, double height)
 
 cv::Ptr<RefractiveCamera> makeColmapCamera(const std::string& name, const std::vector<double>& parameters, const cv::Size& size)
 {
-    const ColmapModel* model = findColmapModel(name);
+    const ColmapLens* model = findColmapLens(name);
     if (!model)
         throw Failure("its camera model '" + name + "' is none of COLMAP's that are known here");
     if (!model->lens)
@@ -83,13 +82,13 @@ cv::Ptr<RefractiveCamera> makeColmapCamera(const std::string& name, const std::v
         throw Failure(format("%s has %zu parameters, here are %zu", name.c_str(), countOf(*model), parameters.size()));
     const double* p = parameters.data();
     const double* centre = p + model->focals;
-    return makeCamera(model->lens, cameraMatrixOf(p[0], p[model->focals - 1], centre[0] - CORNER, centre[1] - CORNER),
+    return makeCamera(model->lens, cameraMatrixOf(p[0], p[model->focals - 1], centre[0] - COLMAP_CORNER, centre[1] - COLMAP_CORNER),
                       std::vector<double>(centre + 2, p + parameters.size()), size);
 }
 
 std::string colmapModelName(int id, size_t& count)
 {
-    for (const ColmapModel& model : COLMAP_MODELS)
+    for (const ColmapLens& model : COLMAP_MODELS)
         if (model.id == id)
         {
             count = countOf(model);
@@ -98,7 +97,7 @@ std::string colmapModelName(int id, size_t& count)
     return "";
 }
 
-bool isColmapModel(const std::string& name) { return findColmapModel(name) != nullptr; }
+bool isColmapModel(const std::string& name) { return findColmapLens(name) != nullptr; }
 
 GlassWindow makePort(const std::string& type, const std::vector<double>& p)
 {
