@@ -95,13 +95,10 @@ std::vector<int> columnsOf(const InnerBlock& block, const std::vector<Observatio
 //! Which observations are asked for and have an image: they get derivatives as if their weight were one.
 std::vector<std::vector<double> > weightsOfAsked(const Problem& problem, const Masks& isAsked)
 {
-    std::vector<std::vector<double> > weights;
-    for (size_t i = 0; i < problem.images().size(); i++)
-    {
-        weights.push_back(std::vector<double>());
-        for (double error : problem.pixelErrors(problem.images()[i]))
-            weights[i].push_back(std::isfinite(error) && isAsked[i][weights[i].size()] ? 1 : 0);
-    }
+    std::vector<std::vector<double> > weights = problem.pixelErrors();
+    for (size_t i = 0; i < weights.size(); i++)
+        for (size_t row = 0; row < weights[i].size(); row++)
+            weights[i][row] = std::isfinite(weights[i][row]) && isAsked[i][row] ? 1 : 0;
     return weights;
 }
 

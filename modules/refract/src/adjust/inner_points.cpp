@@ -170,22 +170,24 @@ std::vector<double> optimizeClusters(Problem& problem, bool onlyTied)
             }
         });
         const double mean = sumOfSquares(searches)/std::max(wanted, 1);
-        areDone = true;
-        for (size_t i = 0; i < clusters.size(); i++)
+        parallel_for_(Range(0, (int)clusters.size()), [&](const Range& range)
         {
-            ClusterSearch& search = searches[i];
-            search.isDone = search.isDone || !std::isfinite(search.best.value);
-            isWanted[i] = !search.isDone;
-            if (search.isDone)
-                continue;
-            double gain;
-            const VectorXd step = stepOf(search.best, search.control.damping(), gain);
-            search.isDone = round + 1 == ROUNDS || search.control.isHopeless() ||
-                            StepControl::isNegligible(gain, std::max(mean, search.best.value), 6);
-            clusters[i].values = search.isDone ? search.values : VectorXd(search.values + step);
-            isWanted[i] = !search.isDone;
-            areDone = areDone && search.isDone;
-        }
+            for (int i = range.start; i < range.end; i++)
+            {
+                ClusterSearch& search = searches[i];
+                search.isDone = search.isDone || !std::isfinite(search.best.value);
+                isWanted[i] = !search.isDone;
+                if (search.isDone)
+                    continue;
+                double gain;
+                const VectorXd step = stepOf(search.best, search.control.damping(), gain);
+                search.isDone = round + 1 == ROUNDS || search.control.isHopeless() ||
+                                StepControl::isNegligible(gain, std::max(mean, search.best.value), 6);
+                clusters[i].values = search.isDone ? search.values : VectorXd(search.values + step);
+                isWanted[i] = !search.isDone;
+            }
+        });
+        areDone = std::find(isWanted.begin(), isWanted.end(), 1) == isWanted.end();
         problem.placePoints(problem.scene().points());
     }
     std::vector<double> squares;

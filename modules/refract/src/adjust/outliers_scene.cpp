@@ -115,9 +115,7 @@ bool SceneOutliers::bringBackWhatLengthsAllow(const std::vector<Point3d>& points
     optimizeClusters(problem_, false);
     std::vector<Point3d> kept = problem_.scene().points();
     problem_.placePoints(kept);
-    std::vector<std::vector<double> > errors;
-    for (const Image& image : problem_.images())
-        errors.push_back(problem_.pixelErrors(image));
+    const std::vector<std::vector<double> > errors = problem_.pixelErrors();
     bool isAny = false;
     for (int i = 0; i < (int)problem_.scene().clusters().size(); i++)
     {

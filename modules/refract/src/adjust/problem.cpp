@@ -3,8 +3,10 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "adjust/problem.hpp"
+#include "arrays/arrays.hpp"
 #include "math/dense.hpp"
 #include "window/place.hpp"
+#include <numeric>
 
 namespace cv { namespace refract {
 
@@ -137,10 +139,16 @@ void Problem::setPose(int view, const Pose& pose)
 
 void Problem::placePoints(const std::vector<Point3d>& points)
 {
-    for (Image& image : images_)
-        for (size_t i = 0; i < image.points.index.size(); i++)
-            if (std::isfinite(points[image.points.index[i]].x))     // derivatives are finite whatever the weight
-                image.points.object[i] = points[image.points.index[i]];
+    parallel_for_(Range(0, (int)images_.size()), [&](const Range& range)
+    {
+        for (int image = range.start; image < range.end; image++)
+        {
+            ImagePoints& own = images_[image].points;
+            for (size_t i = 0; i < own.index.size(); i++)
+                if (std::isfinite(points[own.index[i]].x))     // derivatives are finite whatever the weight
+                    own.object[i] = points[own.index[i]];
+        }
+    });
 }
 
 void Problem::setPoints(const std::vector<Point3d>& points, const Masks& isInlier)
@@ -163,84 +171,119 @@ void Problem::setPoints(const std::vector<Point3d>& points, const Masks& isInlie
     placePoints(scene_.points());
 }
 
-//! @return its RefractiveStatus; the camera must be possible
-uchar Problem::project(const Image& image, const SimilarityTransform& placed, int row, Point2d& pixel) const
+/** The camera must be possible.
+@param part of its way from the camera at which a point is asked for */
+Problem::Prediction Problem::predict(const Image& image, const Pose& pose, double part) const
 {
-    const RigCamera& camera = cameras_[image.camera];
-    const Vec3d X = camera.extrinsics.apply(placed.apply(Vec3d(image.points.object[row])));
-    uchar status = REFRACT_OK;
-    camera.camera(image.refracted)->project(1, &X[0], &X[1], &X[2], nullptr, &pixel.x, &pixel.y, &status);
-    return status;
+    const RigCamera& rigCamera = cameras_[image.camera];
+    const Camera& camera = *rigCamera.camera(image.refracted);
+    const SimilarityTransform placed = targetErrors_.place(rotationMatrix(pose.rvec), pose.tvec, image.refracted);
+    const int count = (int)image.points.object.size();
+    Prediction all = { std::vector<Point2d>(count), std::vector<uchar>(count, (uchar)REFRACT_OK) };
+    double x[BLOCK], y[BLOCK], z[BLOCK], u[BLOCK], v[BLOCK];
+    for (int begin = 0; begin < count; begin += BLOCK)
+    {
+        const int n = std::min(BLOCK, count - begin);
+        for (int k = 0; k < n; k++)
+        {
+            const Vec3d X = part*rigCamera.extrinsics.apply(placed.apply(Vec3d(image.points.object[begin + k])));
+            x[k] = X[0]; y[k] = X[1]; z[k] = X[2];
+        }
+        camera.project(n, x, y, z, nullptr, u, v, &all.status[begin]);
+        for (int k = 0; k < n; k++)
+            all.pixel[begin + k] = Point2d(u[k], v[k]);
+    }
+    return all;
 }
 
 std::vector<double> Problem::pixelErrors(const Image& image, const Pose& pose) const
 {
     const int count = (int)image.points.pixel.size();
-    const double infinity = std::numeric_limits<double>::infinity();
-    std::vector<double> errors(count, infinity);
-    const SimilarityTransform placed = targetErrors_.place(rotationMatrix(pose.rvec), pose.tvec, image.refracted);
-    for (int row = 0; row < count && cameras_[image.camera].camera(image.refracted); row++)
-    {
-        Point2d pixel;
-        if (project(image, placed, row, pixel) == REFRACT_OK)
-            errors[row] = image.points.whitening.empty() ? norm(pixel - image.points.pixel[row])
-                                                         : norm(image.points.error(row, pixel.x, pixel.y));
-    }
+    std::vector<double> errors(count, std::numeric_limits<double>::infinity());
+    if (!cameras_[image.camera].camera(image.refracted))
+        return errors;
+    const Prediction all = predict(image, pose);
+    for (int row = 0; row < count; row++)
+        if (all.status[row] == REFRACT_OK)
+            errors[row] = image.points.whitening.empty() ? norm(all.pixel[row] - image.points.pixel[row])
+                                                         : norm(image.points.error(row, all.pixel[row].x, all.pixel[row].y));
     return errors;
+}
+
+std::vector<std::vector<double> > Problem::pixelErrors() const
+{
+    std::vector<std::vector<double> > all(images_.size());
+    parallel_for_(Range(0, (int)images_.size()), [&](const Range& range)
+    {
+        for (int i = range.start; i < range.end; i++)
+            all[i] = pixelErrors(images_[i]);
+    });
+    return all;
+}
+
+//! Why no image is seen by its camera; converged where one may be.
+FitOutcome Problem::checkCamera(const Image& image) const
+{
+    if (cameras_[image.camera].camera(image.refracted))
+        return FitOutcome();
+    FitOutcome outcome(FitOutcome::NO_IMAGE);
+    outcome.camera = image.camera;
+    const TransferredWindow* window = cameras_[image.camera].window.get();
+    if (!window)            // its own is impossible
+        return outcome;
+    const GlassWindow seen = withParameters(rig_.cameras[image.camera].window(), window->parameters.data());
+    outcome.status = seen.normal[2] > 0 ? FitOutcome::BEYOND_WINDOW : FitOutcome::LOOKS_AWAY;
+    outcome.point = Point3d(seen.normal);
+    outcome.distance = distanceToSurface(seen);
+    return outcome;
 }
 
 FitOutcome Problem::findPointWithoutImage() const
 {
-    for (const Image& image : images_)
+    std::vector<FitOutcome> outcomes(images_.size());
+    parallel_for_(Range(0, (int)images_.size()), [&](const Range& range)
     {
-        FitOutcome outcome(FitOutcome::NO_IMAGE);
-        outcome.camera = image.camera;
-        if (!cameras_[image.camera].camera(image.refracted))
-        {
-            const TransferredWindow* window = cameras_[image.camera].window.get();
-            if (!window)            // its own is impossible
-                return outcome;
-            const GlassWindow seen = withParameters(rig_.cameras[image.camera].window(), window->parameters.data());
-            outcome.status = seen.normal[2] > 0 ? FitOutcome::BEYOND_WINDOW : FitOutcome::LOOKS_AWAY;
-            outcome.point = Point3d(seen.normal);
-            outcome.distance = distanceToSurface(seen);
+        for (int i = range.start; i < range.end; i++)
+            outcomes[i] = findPointWithoutImage(images_[i]);
+    });
+    for (const FitOutcome& outcome : outcomes)
+        if (!outcome.converged())
             return outcome;
-        }
+    return FitOutcome();
+}
+
+FitOutcome Problem::findPointWithoutImage(const Image& image) const
+{
+    FitOutcome outcome = checkCamera(image);
+    if (!outcome.converged())
+        return outcome;
+    const Prediction all = predict(image, pose(image.view));
+    for (int row = 0; row < (int)all.status.size(); row++)
+    {
+        if (image.rootWeights[row] == 0 || all.status[row] == REFRACT_OK)
+            continue;
+        outcome.status = FitOutcome::NO_IMAGE;
+        outcome.camera = image.camera;
         outcome.view = image.view;
         outcome.refracted = image.refracted;
-        const Pose direct = pose(image.view);
-        const SimilarityTransform placed = targetErrors_.place(rotationMatrix(direct.rvec), direct.tvec, image.refracted);
-        for (int row = 0; row < (int)image.points.object.size(); row++)
-        {
-            if (image.rootWeights[row] == 0)
-                continue;
-            Point2d pixel;
-            outcome.point = image.points.object[row];
-            outcome.pointIndex = image.points.index[row];
-            outcome.imageStatus = project(image, placed, row, pixel);
-            if (outcome.imageStatus != REFRACT_OK)
-                return outcome;
-        }
+        outcome.point = image.points.object[row];
+        outcome.pointIndex = image.points.index[row];
+        outcome.imageStatus = all.status[row];
+        return outcome;
     }
-    return FitOutcome();
+    return outcome;
 }
 
 FitOutcome Problem::findPointAtWindow(double nearer, int owner) const
 {
     for (const Image& image : images_)
     {
-        const RigCamera& camera = cameras_[image.camera];
-        if (!image.refracted || !camera.camera(true) || (owner >= 0 && rig_.owner[image.camera] != owner))
+        if (!image.refracted || !cameras_[image.camera].camera(true) || (owner >= 0 && rig_.owner[image.camera] != owner))
             continue;
-        const Pose direct = pose(image.view);
-        const SimilarityTransform placed = targetErrors_.place(rotationMatrix(direct.rvec), direct.tvec, true);
-        for (int row = 0; row < (int)image.points.object.size(); row++)
+        const Prediction all = predict(image, pose(image.view), 1 - nearer);
+        for (int row = 0; row < (int)all.status.size(); row++)
         {
-            const Vec3d X = (1 - nearer)*camera.extrinsics.apply(placed.apply(Vec3d(image.points.object[row])));
-            Point2d pixel;
-            uchar status = REFRACT_OK;
-            camera.camera(true)->project(1, &X[0], &X[1], &X[2], nullptr, &pixel.x, &pixel.y, &status);
-            if (image.rootWeights[row] == 0 || status != REFRACT_BEHIND_WINDOW)
+            if (image.rootWeights[row] == 0 || all.status[row] != REFRACT_BEHIND_WINDOW)
                 continue;
             FitOutcome outcome;
             outcome.view = image.view;
@@ -308,25 +351,27 @@ double Problem::squaredDistances(const Image& image) const
 {
     if (image.points.whitening.empty())
         return squaredPixelError(image);
-    const Pose direct = pose(image.view);
-    const SimilarityTransform placed = targetErrors_.place(rotationMatrix(direct.rvec), direct.tvec, image.refracted);
+    const Prediction all = predict(image, pose(image.view));
     double sum = 0;
-    for (int row = 0; row < (int)image.points.pixel.size(); row++)
+    for (int row = 0; row < (int)all.status.size(); row++)
     {
-        Point2d pixel;
         const double weight = image.rootWeights[row]*image.rootWeights[row];
         if (weight > 0)
-            sum += project(image, placed, row, pixel) == REFRACT_OK ? weight*squaredDistance(pixel, image.points.pixel[row])
-                                                                    : std::numeric_limits<double>::infinity();
+            sum += all.status[row] == REFRACT_OK ? weight*squaredDistance(all.pixel[row], image.points.pixel[row])
+                                                 : std::numeric_limits<double>::infinity();
     }
     return sum;
 }
 
 double Problem::squaredError() const
 {
-    double sum = 0;
-    for (const Image& image : images_)
-        sum += squaredPixelError(image);
+    std::vector<double> squares(images_.size());
+    parallel_for_(Range(0, (int)images_.size()), [&](const Range& range)
+    {
+        for (int i = range.start; i < range.end; i++)
+            squares[i] = squaredPixelError(images_[i]);
+    });
+    double sum = std::accumulate(squares.begin(), squares.end(), 0.);
     for (int block = 0; block < (int)blocks_.size(); block++)
         sum += priorResidual(block).squaredNorm();
     if (rigPrior_.count() > 0)

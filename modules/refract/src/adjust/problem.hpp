@@ -133,6 +133,7 @@ public:
     image. */
     std::vector<double> pixelErrors(const Image& image, const Pose& pose) const;
     std::vector<double> pixelErrors(const Image& image) const { return pixelErrors(image, pose(image.view)); }
+    std::vector<std::vector<double> > pixelErrors() const;      //!< of all images
     double squaredPixelError(const Image& image) const;     //!< weighted and whitened
     double squaredDistances(const Image& image) const;      //!< weighted; in pixels whatever their covariances
     //! The first point with a weight that has no image; or which window no camera can look through so.
@@ -231,7 +232,15 @@ private:
     void addCameraBlocks(int camera, const CameraPrior& prior, int flags);
     void addImages(const RigViews& views);
     void addImage(int view, int camera, bool refracted, const ImagePoints& points);
-    uchar project(const Image& image, const SimilarityTransform& placed, int row, Point2d& pixel) const;
+    //! Pixels of an image's points, and their RefractiveStatus.
+    struct Prediction
+    {
+        std::vector<Point2d> pixel;
+        std::vector<uchar> status;
+    };
+    FitOutcome checkCamera(const Image& image) const;
+    FitOutcome findPointWithoutImage(const Image& image) const;
+    Prediction predict(const Image& image, const Pose& pose, double part = 1) const;
     bool isActive(int block) const;
     int blockOf(ParameterBlock::Kind kind, int camera) const;
     const double* valuesOf(ParameterBlock::Kind kind, int camera) const;    //!< null for the extrinsics of camera 1

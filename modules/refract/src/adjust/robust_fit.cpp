@@ -61,13 +61,13 @@ std::vector<std::vector<double> > RobustFit::errors() const
     const double HALF = std::sqrt(std::log(4.))/0.6744898;      // between the medians of two coordinates' length and of one's
     std::vector<std::vector<double> > all;
     const Masks candidates = outliers_.candidates();
+    const std::vector<std::vector<double> > pixelErrors = problem_.pixelErrors();
     for (size_t i = 0; i < images().size(); i++)
     {
-        const std::vector<double> ofImage = problem_.pixelErrors(images()[i]);
         all.push_back(std::vector<double>());
-        for (size_t row = 0; row < ofImage.size(); row++)
+        for (size_t row = 0; row < pixelErrors[i].size(); row++)
             if (candidates[i][row])
-                all.back().push_back(images()[i].points.rowsOf(row) == 2 ? ofImage[row] : HALF*ofImage[row]);
+                all.back().push_back(images()[i].points.rowsOf(row) == 2 ? pixelErrors[i][row] : HALF*pixelErrors[i][row]);
     }
     return all;
 }
@@ -154,12 +154,10 @@ void RobustFit::estimateScale()
 Masks RobustFit::smallErrors() const
 {
     Masks inliers = outliers_.candidates();
+    const std::vector<std::vector<double> > errors = problem_.pixelErrors();
     for (size_t i = 0; i < inliers.size(); i++)
-    {
-        const std::vector<double> errors = problem_.pixelErrors(images()[i]);
-        for (size_t row = 0; row < errors.size(); row++)
-            inliers[i][row] = inliers[i][row] && errors[row] < CUT*scale_;
-    }
+        for (size_t row = 0; row < inliers[i].size(); row++)
+            inliers[i][row] = inliers[i][row] && errors[i][row] < CUT*scale_;
     return inliers;
 }
 
