@@ -197,48 +197,55 @@ EliminatedCluster eliminate(const Problem& problem, int index, const std::vector
     return result;
 }
 
-const int ROWS = 384, PANEL = 64;
-
-//! Subtracts W W^T of many clusters from the cameras' equations at a time, as products of large matrices are faster.
-class ProductsOfRows
+//! What some clusters tell of the cameras alone.
+struct CameraProducts
 {
-public:
-    explicit ProductsOfRows(MatrixXd& equations) : equations_(equations), rows_(MatrixXd::Zero(ROWS, equations.cols())), used_(0) {}
+    MatrixXd products;
+    VectorXd gradient;
 
-    void subtract(const EliminatedCluster& cluster)
+    //! Of clusters begin ... end - 1, together, as products of large matrices are faster.
+    CameraProducts(const std::vector<EliminatedCluster>& clusters, int begin, int end, int cameras)
+        : products(MatrixXd::Zero(cameras, cameras))
     {
-        const int size = (int)cluster.W.cols();
-        if (used_ + size > rows_.rows())
-            flush();
-        if (size > rows_.rows())
-            rows_ = MatrixXd::Zero(size, rows_.cols());
-        const std::vector<int>& columns = cluster.points.columns;
-        for (size_t k = 0; k < columns.size() && columns[k] < rows_.cols(); k++)
-            rows_.block(used_, columns[k], size, 1) = cluster.W.row(k).transpose();
-        used_ += size;
-    }
-
-    void flush()
-    {
-        const int count = (int)rows_.cols();
-        parallel_for_(Range(0, (count + PANEL - 1)/PANEL), [&](const Range& range)
+        int count = 0;
+        for (int i = begin; i < end; i++)
+            count += (int)clusters[i].W.cols();
+        MatrixXd rows = MatrixXd::Zero(count, cameras);
+        VectorXd residual(count);
+        int row = 0;
+        for (int i = begin; i < end; i++)
         {
-            for (int panel = range.start; panel < range.end; panel++)
-            {
-                const int begin = panel*PANEL, width = std::min(PANEL, count - begin);
-                subtractTransposeTimes(rows_.topRows(used_).rightCols(count - begin), rows_.topRows(used_).middleCols(begin, width),
-                                       equations_.block(begin, begin, count - begin, width));
-            }
-        });
-        rows_.setZero();
-        used_ = 0;
+            const std::vector<int>& columns = clusters[i].points.columns;
+            const int size = (int)clusters[i].W.cols();
+            for (size_t k = 0; k < columns.size() && columns[k] < cameras; k++)
+                rows.block(row, columns[k], size, 1) = clusters[i].W.row(k).transpose();
+            residual.segment(row, size) = clusters[i].residual;
+            row += size;
+        }
+        addGram(rows, 1, products);
+        gradient = transposeTimesVector(rows, residual);
     }
-
-private:
-    MatrixXd& equations_;
-    MatrixXd rows_;
-    int used_;
+    CameraProducts() {}
 };
+
+//! Sums are in the order of the clusters, so that threads make no difference.
+void subtractFromCameras(const std::vector<EliminatedCluster>& clusters, NormalEquations& equations)
+{
+    const int AT_A_TIME = 128, count = (int)clusters.size(), cameras = (int)equations.ofCameras.cols();
+    if (cameras == 0)           // Eigen has no products of nothing
+        return;
+    std::vector<CameraProducts> parts((count + AT_A_TIME - 1)/AT_A_TIME);
+    parallel_for_(Range(0, (int)parts.size()), [&](const Range& range)
+    {
+        for (int i = range.start; i < range.end; i++)
+            parts[i] = CameraProducts(clusters, i*AT_A_TIME, std::min(count, (i + 1)*AT_A_TIME), cameras);
+    });
+    for (const CameraProducts& part : parts)
+    {
+        equations.ofCameras -= part.products;
+        equations.gradient.head(cameras) -= part.gradient;
+    }
+}
 
 //! One pose in the W of one cluster.
 struct PoseColumns
@@ -256,8 +263,10 @@ void subtractPose(int view, const std::vector<PoseColumns>& seen, std::vector<in
     for (size_t i = 0; i < column.rows.size(); i++)
         entry[column.rows[i]] = (int)i;
     Eigen::Matrix<double, SIZE, Eigen::Dynamic> ofBoth = Eigen::Matrix<double, SIZE, Eigen::Dynamic>::Zero(SIZE, cameras);
+    auto gradient = equations.gradient.segment<SIZE>(cameras + SIZE*view);
     for (const PoseColumns& own : seen)
     {
+        gradient.noalias() -= own.cluster->W.middleRows<SIZE>(own.first).lazyProduct(own.cluster->residual);
         const std::vector<int>& columns = own.cluster->points.columns;
         const MatrixXd& W = own.cluster->W;
         for (int point = 0; point < (int)W.cols(); point += 3)
@@ -280,25 +289,26 @@ void subtractPose(int view, const std::vector<PoseColumns>& seen, std::vector<in
 }
 
 //! From all but the cameras' own. Each pose by itself, the clusters in their order, so that threads make no difference.
-void subtractPoses(const std::vector<EliminatedCluster>& clusters, NormalEquations& equations)
+void subtractFromPoses(const std::vector<EliminatedCluster>& clusters, NormalEquations& equations)
 {
     const int cameras = (int)equations.ofCameras.cols(), views = equations.ofPoses.count();
     std::vector<std::vector<PoseColumns> > seen(views);
     for (const EliminatedCluster& cluster : clusters)
     {
         const std::vector<int>& columns = cluster.points.columns;
-        for (size_t k = 0; k < columns.size(); k++)
-        {
-            equations.gradient[columns[k]] -= cluster.W.row(k).dot(cluster.residual);
-            if (columns[k] >= cameras && (columns[k] - cameras) % SIZE == 0)
-                seen[(columns[k] - cameras)/SIZE].push_back({ &cluster, (int)k });
-        }
+        size_t k = std::lower_bound(columns.begin(), columns.end(), cameras) - columns.begin();
+        for (; k < columns.size(); k += SIZE)
+            seen[(columns[k] - cameras)/SIZE].push_back({ &cluster, (int)k });
     }
-    parallel_for_(Range(0, views), [&](const Range& range)
+    std::vector<int> some;              // of a strip few views see some points
+    for (int view = 0; view < views; view++)
+        if (!seen[view].empty())
+            some.push_back(view);
+    parallel_for_(Range(0, (int)some.size()), [&](const Range& range)
     {
         std::vector<int> entry(views);
-        for (int view = range.start; view < range.end; view++)
-            subtractPose(view, seen[view], entry, equations);
+        for (int i = range.start; i < range.end; i++)
+            subtractPose(some[i], seen[some[i]], entry, equations);
     });
 }
 
@@ -324,7 +334,6 @@ Information eliminatePoints(const Problem& problem, const FreeSpace& space, cons
     information.rounding = std::sqrt(ROUNDING);
     const int count = (int)problem.scene().clusters().size();
     information.inner.resize(count);
-    ProductsOfRows products(equations.ofCameras);
     const int MANY = 4096;      // clusters at a time
     for (int begin = 0; begin < count; begin += MANY)
     {
@@ -335,15 +344,14 @@ Information eliminatePoints(const Problem& problem, const FreeSpace& space, cons
             for (int i = range.start; i < range.end; i++)
                 some[i] = eliminate(problem, begin + i, images, place);
         });
-        subtractPoses(some, equations);
+        subtractFromCameras(some, equations);
+        subtractFromPoses(some, equations);
         for (size_t i = 0; i < some.size(); i++)
         {
-            products.subtract(some[i]);
             information.ofInner += some[i].residual.squaredNorm();
             information.inner[begin + i] = std::move(some[i].points);
         }
     }
-    products.flush();
     RootOfEquations root(equations, information.effect, ROUNDING);
     information.root = std::move(root.ofCameras);
     information.residual = std::move(root.residual);
