@@ -50,13 +50,19 @@ class SceneRows
 public:
     explicit SceneRows(const Problem& problem) : problem_(problem), images_(problem.images().size()) {}
 
-    //! @param isWanted per cluster
-    void update(const std::vector<uchar>& isWanted)
+    //! Of these clusters alone: of the last ones on their way, few rows are asked for.
+    void update(const std::vector<int>& clusters)
     {
+        std::vector<std::vector<int> > wanted(images_.size());
+        for (int cluster : clusters)
+            for (const Observation& o : problem_.observationsOf(cluster))
+                if (problem_.images()[o.image].rootWeights[o.row] > 0)
+                    wanted[o.image].push_back(o.row);
         parallel_for_(Range(0, (int)images_.size()), [&](const Range& range)
         {
             for (int i = range.start; i < range.end; i++)
-                updateImage(problem_.images()[i], isWanted, images_[i]);
+                if (!wanted[i].empty())
+                    updateImage(problem_.images()[i], wanted[i], images_[i]);
         });
     }
 
@@ -84,14 +90,8 @@ public:
     }
 
 private:
-    void updateImage(const Image& image, const std::vector<uchar>& isWanted, Problem::Derivatives& rows) const
+    void updateImage(const Image& image, const std::vector<int>& wanted, Problem::Derivatives& rows) const
     {
-        std::vector<int> wanted;
-        for (int row = 0; row < (int)image.rootWeights.size(); row++)
-            if (image.rootWeights[row] > 0 && isWanted[problem_.scene().clusterOf(image.points.index[row])])
-                wanted.push_back(row);
-        if (wanted.empty())
-            return;
         const Image some = partOf(image, wanted);
         Problem::Derivatives ofSome;
         problem_.evaluate(some, some.rootWeights, Problem::BY_POSE, ofSome);
@@ -131,6 +131,26 @@ double sumOfSquares(const std::vector<ClusterSearch>& searches)
     return sum;
 }
 
+template<class Body>
+void forEachOf(const std::vector<int>& clusters, const Body& body)
+{
+    parallel_for_(Range(0, (int)clusters.size()), [&](const Range& range)
+    {
+        for (int k = range.start; k < range.end; k++)
+            body(clusters[k]);
+    });
+}
+
+//! Those of one point alone are left out if only the tied ones are asked for.
+std::vector<int> clustersOf(const Problem& problem, bool onlyTied)
+{
+    std::vector<int> some;
+    for (int i = 0; i < (int)problem.scene().clusters().size(); i++)
+        if (!onlyTied || problem.scene().clusters()[i].points.size() > 1)
+            some.push_back(i);
+    return some;
+}
+
 } // namespace
 
 std::vector<double> optimizeClusters(Problem& problem, bool onlyTied)
@@ -138,57 +158,41 @@ std::vector<double> optimizeClusters(Problem& problem, bool onlyTied)
     const int ROUNDS = 50;
     std::vector<Cluster>& clusters = problem.scene().clusters();
     std::vector<ClusterSearch> searches(clusters.size());
-    std::vector<uchar> isWanted;
-    for (size_t i = 0; i < clusters.size(); i++)
-    {
-        searches[i].isDone = onlyTied && clusters[i].points.size() < 2;
-        isWanted.push_back(!searches[i].isDone);
-    }
-    const int wanted = (int)std::count(isWanted.begin(), isWanted.end(), 1);
+    std::vector<int> left = clustersOf(problem, onlyTied);
+    const int count = std::max((int)left.size(), 1);
     SceneRows rows(problem);
-    bool areDone = false;
-    for (int round = 0; round < ROUNDS && !areDone; round++)
+    for (int round = 0; round < ROUNDS && !left.empty(); round++)
     {
-        rows.update(isWanted);
-        parallel_for_(Range(0, (int)clusters.size()), [&](const Range& range)
+        rows.update(left);
+        forEachOf(left, [&](int i)
         {
-            for (int i = range.start; i < range.end; i++)
+            ClusterSearch& search = searches[i];
+            ClusterSquares now = rows.squaresOf(i);
+            if (round > 0 && !(now.value < search.best.value))
+                search.control.reject();
+            else
             {
-                ClusterSearch& search = searches[i];
-                if (search.isDone)
-                    continue;
-                ClusterSquares now = rows.squaresOf(i);
-                if (round > 0 && !(now.value < search.best.value))
-                    search.control.reject();
-                else
-                {
-                    if (round > 0)
-                        search.control.accept();
-                    search.best = std::move(now);
-                    search.values = clusters[i].values;
-                }
+                if (round > 0)
+                    search.control.accept();
+                search.best = std::move(now);
+                search.values = clusters[i].values;
             }
         });
-        const double mean = sumOfSquares(searches)/std::max(wanted, 1);
-        parallel_for_(Range(0, (int)clusters.size()), [&](const Range& range)
+        const double mean = sumOfSquares(searches)/count;
+        forEachOf(left, [&](int i)
         {
-            for (int i = range.start; i < range.end; i++)
-            {
-                ClusterSearch& search = searches[i];
-                search.isDone = search.isDone || !std::isfinite(search.best.value);
-                isWanted[i] = !search.isDone;
-                if (search.isDone)
-                    continue;
-                double gain;
-                const VectorXd step = stepOf(search.best, search.control.damping(), gain);
-                search.isDone = round + 1 == ROUNDS || search.control.isHopeless() ||
-                                StepControl::isNegligible(gain, std::max(mean, search.best.value), 6);
-                clusters[i].values = search.isDone ? search.values : VectorXd(search.values + step);
-                isWanted[i] = !search.isDone;
-            }
+            ClusterSearch& search = searches[i];
+            search.isDone = !std::isfinite(search.best.value);
+            if (search.isDone)
+                return;
+            double gain;
+            const VectorXd step = stepOf(search.best, search.control.damping(), gain);
+            search.isDone = round + 1 == ROUNDS || search.control.isHopeless() ||
+                            StepControl::isNegligible(gain, std::max(mean, search.best.value), 6);
+            clusters[i].values = search.isDone ? search.values : VectorXd(search.values + step);
+            problem.placeCluster(i);
         });
-        areDone = std::find(isWanted.begin(), isWanted.end(), 1) == isWanted.end();
-        problem.placePoints(problem.scene().points());
+        left.erase(std::remove_if(left.begin(), left.end(), [&](int i) { return searches[i].isDone; }), left.end());
     }
     std::vector<double> squares;
     for (const ClusterSearch& search : searches)
@@ -199,15 +203,11 @@ std::vector<double> optimizeClusters(Problem& problem, bool onlyTied)
 std::vector<MatrixXd> informationOfTied(const Problem& problem)
 {
     SceneRows rows(problem);
-    const std::vector<Cluster>& clusters = problem.scene().clusters();
-    std::vector<uchar> isWanted;
-    for (const Cluster& cluster : clusters)
-        isWanted.push_back(cluster.points.size() > 1);
-    rows.update(isWanted);
-    std::vector<MatrixXd> matrices(clusters.size());
-    for (size_t i = 0; i < clusters.size(); i++)
-        if (isWanted[i])
-            matrices[i] = rows.squaresOf((int)i).matrix;
+    const std::vector<int> tied = clustersOf(problem, true);
+    rows.update(tied);
+    std::vector<MatrixXd> matrices(problem.scene().clusters().size());
+    for (int i : tied)
+        matrices[i] = rows.squaresOf(i).matrix;
     return matrices;
 }
 

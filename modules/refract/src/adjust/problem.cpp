@@ -151,6 +151,16 @@ void Problem::placePoints(const std::vector<Point3d>& points)
     });
 }
 
+void Problem::placeCluster(int cluster)
+{
+    const double* const values = scene_.clusters()[cluster].values.data();
+    for (const Observation& o : observations_[cluster])
+    {
+        ImagePoints& points = images_[o.image].points;
+        points.object[o.row] = Point3d(Vec3d(values + 3*scene_.placeInCluster(points.index[o.row])));
+    }
+}
+
 void Problem::setPoints(const std::vector<Point3d>& points, const Masks& isInlier)
 {
     scene_.setPoints(points);

@@ -178,6 +178,7 @@ public:
     void setPoints(const std::vector<Point3d>& points, const Masks& isInlier);
     //! Copies the scene's points to where the residuals look for them; what is not in use stays where it was.
     void placePoints(const std::vector<Point3d>& points);
+    void placeCluster(int cluster);     //!< the same of its points
     //! Of all its points, also those that are left out.
     const std::vector<Observation>& observationsOf(int cluster) const { return observations_[cluster]; }
 
