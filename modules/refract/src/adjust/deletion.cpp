@@ -50,14 +50,17 @@ public:
     Matx22d operator()(const ImageRows& image, int row, int at) const
     {
         const int size = (int)image.inner.cols(), count = (int)image.columns.size();
-        const MatrixXd E = image.inner.middleRows(2*row, 2);
-        Eigen::Matrix2d H = timesTranspose(product(E, ofInner_.block(at, at, size, size)), E);
-        if (count > 0)
+        const auto E = image.inner.middleRows<2>(2*row);
+        const auto F = image.outer.middleRows<2>(2*row);
+        Eigen::Matrix2d H = E.lazyProduct(ofInner_.block(at, at, size, size)).eval().lazyProduct(E.transpose());
+        const std::vector<int> own = placesOf(image.columns);
+        for (int c = 0; c < count; c++)         // few columns, of many: no products of matrices
         {
-            const std::vector<int> own = placesOf(image.columns);
-            const MatrixXd F = image.outer.middleRows(2*row, 2);
-            const Eigen::Matrix2d both = timesTranspose(product(E, columnsOf(cross_.middleRows(at, size), own)), F);
-            H += both + both.transpose() + timesTranspose(product(F, columnsOf(rowsOf(S_, own), own)), F);
+            const Eigen::Vector2d both = E.lazyProduct(cross_.block(at, own[c], size, 1));
+            Eigen::Vector2d ofOuter = both;
+            for (int r = 0; r < count; r++)
+                ofOuter += S_(own[r], own[c])*F.col(r);
+            H += ofOuter*F.col(c).transpose() + F.col(c)*both.transpose();
         }
         return Matx22d(H(0, 0), H(0, 1), H(1, 0), H(1, 1));
     }
