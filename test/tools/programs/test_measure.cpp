@@ -469,7 +469,7 @@ TEST_CASE("refract_measure refuses with one sentence and writes nothing", "[tool
         {calib + " " + both + " --pixel-sigma=nan", "--pixel-sigma"},
         {calib + " " + both + " --pixel-sigma=inf", "--pixel-sigma"},
         {calib + " " + both + " --marker=20", "--marker and --dictionary are for"},
-        {calib + " --points=" + (folder / "empty.yml") + TARGET, "leave --size and --square out"},
+        {calib + " --points=" + (folder / "empty.yml") + TARGET, "leave --size and --square, or --target, out"},
         {calib + " " + pages + " " + second + TARGET, "has 2 pages"},
     };
     const size_t files = folder.count();
