@@ -7,6 +7,7 @@
 #include "diagnose/image_mistakes.hpp"
 #include "diagnose/target_mistakes.hpp"
 #include "diagnose/value_mistakes.hpp"
+#include "calibrate/image_fit.hpp"
 #include "console/failure.hpp"
 #include "console/table.hpp"
 #include <algorithm>
@@ -322,9 +323,14 @@ bool requireNoMixUp(const CalibrationInput& input, const MixUps& mixUps, std::op
 {
     if (mixUps.clear.empty() && !(pairsFromOneMap(input.data) > WINDOWS_PX) && !areUnrelated(mixUps))
         return false;
-    const double px = medianErrorOfFit(input.data, input.options, only);
+    Fit fit;
+    const double px = medianErrorOfFit(input.data, input.options, &fit);
     if (px < largestSoundError(input.data))
+    {
+        if (isOnlyMinimum(input.data, fit, input.options.flags))
+            only = fit.rig;
         return false;
+    }
     const std::vector<std::string> reasons = imageMistakes(input, mixUps);
     if (!reasons.empty())
         refuse(input, px, reasons);

@@ -49,8 +49,7 @@ double largestSoundError(const RigData& data)
     return limit;
 }
 
-//! Throws if there is no fit soon.
-static Fit soonFitted(const RigData& data, const RigOptions& given)
+double medianErrorOfFit(const RigData& data, const RigOptions& given, Fit* result)
 {
     // What is known of a value does not matter to pixels; a wedge or a bow that is free makes each iteration slow.
     RigOptions options = given;
@@ -58,32 +57,12 @@ static Fit soonFitted(const RigData& data, const RigOptions& given)
     options.window.wedge.clear();
     if (options.window.shape == WINDOW_BENT)
         options.window.shape = WINDOW_FLAT;
-    std::vector<LensSource> sources;
-    return fitImages(data, startModel(data, options, sources), allViews(data), options.flags, SOON);
-}
-
-double medianErrorOfFit(const RigData& data, const RigOptions& options, RigModel* result)
-{
     try
     {
-        const Fit fit = soonFitted(data, options);
+        std::vector<LensSource> sources;
+        const Fit fit = fitImages(data, startModel(data, options, sources), allViews(data), options.flags, SOON);
         if (result)
-            *result = fit.rig;
-        return medianCornerError(data, residualsOf(data, fit));
-    }
-    catch (const std::exception&)
-    {
-        return NO_FIT;
-    }
-}
-
-double medianErrorOfFit(const RigData& data, const RigOptions& options, std::optional<RigModel>& only)
-{
-    try
-    {
-        const Fit fit = soonFitted(data, options);
-        if (isOnlyMinimum(data, fit, options.flags))
-            only = fit.rig;
+            *result = fit;
         return medianCornerError(data, residualsOf(data, fit));
     }
     catch (const std::exception&)

@@ -7,7 +7,6 @@
 #include "calibrate/fit.hpp"
 #include "calibrate/starting_model.hpp"
 #include <limits>
-#include <optional>
 
 /* How well a calibration fits its images. If it does not, something in the input is wrong. */
 namespace tools {
@@ -24,10 +23,8 @@ double medianCornerError(const RigData& data, const std::vector<Residual>& resid
 //! The largest median error of correct input, px.
 double largestSoundError(const RigData& data);
 
-//! medianCornerError of a fit to all the data, NO_FIT if there is none soon. @param result gets the rig that was fitted
-double medianErrorOfFit(const RigData& data, const RigOptions& options, RigModel* result = nullptr);
-//! @param only gets the rig, if the search met no other minimum
-double medianErrorOfFit(const RigData& data, const RigOptions& options, std::optional<RigModel>& only);
+//! medianCornerError of a fit to all the data, NO_FIT if there is none soon. @param result gets that fit
+double medianErrorOfFit(const RigData& data, const RigOptions& options, Fit* result = nullptr);
 
 } // namespace tools
 

@@ -56,12 +56,12 @@ Explanation wrongScale(const CalibrationInput& input)
     {
         options.window = pane;
         options.window.thickness[0] *= start;
-        RigModel rig;
-        const double px = medianErrorOfFit(input.data, options, &rig);
+        Fit fit;
+        const double px = medianErrorOfFit(input.data, options, &fit);
         if (px >= 0.5*best)
             continue;
         best = px;
-        ratio = rig.cameras[0]->window().thickness[0]/pane.thickness[0];
+        ratio = fit.rig.cameras[0]->window().thickness[0]/pane.thickness[0];
     }
     if (!(input.square > 0))
         return {format("lengths %.3g times as long%s", 1./ratio, isRatioOfUnits(ratio) ? " (a wrong unit?)" : ""), best};
@@ -97,9 +97,9 @@ Explanation wrongIndex(const CalibrationInput& input)
     RigOptions options = input.options;
     options.flags = (options.flags | GLASS_FREE_INDEX) & ~GLASS_FREE_THICKNESS;
     options.window.index[0] = USUAL_INDEX;
-    RigModel rig;
-    const double px = medianErrorOfFit(input.data, options, &rig);
-    const double index = px < NO_FIT ? rig.cameras[0]->window().index[0] : 1.;
+    Fit fit;
+    const double px = medianErrorOfFit(input.data, options, &fit);
+    const double index = px < NO_FIT ? fit.rig.cameras[0]->window().index[0] : 1.;
     const std::vector<GivenIndex>& layers = input.options.layers;
     return {format("--index=%.3g in place of ", index)
             + typedIndex(layers.empty() ? GivenIndex{input.options.window.index[0]} : layers[0], 4),
