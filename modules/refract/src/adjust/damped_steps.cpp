@@ -14,6 +14,7 @@ namespace {
 const double LEAST = 1e-14;         // of the damping: below it is rounding
 const double MOST = 1e16;
 const double FIRST_AFTER_FAILURE = 1e-8;
+const double RESIDUAL_ROUNDING = 1e-12;     // px
 
 //! @param ratio of the gain to what was foretold
 double dampingAfter(double damping, double ratio)
@@ -35,8 +36,9 @@ void DampedSteps::run(ReducedCost& cost)
         const double squares = cost.squaredError();
         double foretold;
         cost.setStep(dampedStep(cost.information(), damping, foretold));
-        // Too little to be seen, or to matter: of exact data it is rounding.
-        if (foretold <= std::max(squares*std::min(0.1*change, 1e-7/equations), 1e-24*equations))
+        // Too little to matter, or to be seen: of exact data, also of those that were printed with some digits, it is rounding.
+        const double rounding = 2*RESIDUAL_ROUNDING*std::sqrt(squares) + RESIDUAL_ROUNDING*RESIDUAL_ROUNDING*equations;
+        if (foretold <= std::max(squares*std::min(0.1*change, 1e-7/equations), rounding))
         {
             cost.restore();
             isConverged = damping <= WEAK;
