@@ -110,16 +110,27 @@ TEST_CASE("Stages of a search see more and more of the views", "[search]")
     CHECK(picked.cameras[0].refracted[1] == search.views.cameras[0].refracted[1]);
 }
 
+//! A camera that saw one board through its window: of some draws, which differ by the compiler, another minimum is plausible, too.
+static RigCall callWithOtherMinimum(double& rms)
+{
+    for (unsigned salt = 3701; salt < 3721; salt++)
+    {
+        Random random(salt);
+        RigTruth truth = makeRig(1, { 0 }, 1);
+        truth.cameras[0]->setWindow(makeWindow(PANE_IN_AIR, random));
+        RigCall call(truth, makeRigScene(truth, 1, random, SIGMA), false);
+        rms = call.run(0);
+        if (std::isfinite(call.otherMinima.at<double>(3)))
+            return call;
+    }
+    throw std::runtime_error("no draw has another minimum");
+}
+
 TEST_CASE("A fit from an earlier one looks for no other minimum, unless it has to", "[search]")
 {
-    Random random(3701);
     CAPTURE(seed());
-    RigTruth truth = makeRig(1, { 0 }, 1);
-    truth.cameras[0]->setWindow(makeWindow(PANE_IN_AIR, random));
-    const RigScene scene = makeRigScene(truth, 1, random, SIGMA);
-    RigCall call(truth, scene, false);
-    const double rms = call.run(0);
-    REQUIRE(std::isfinite(call.otherMinima.at<double>(3)));
+    double rms;
+    RigCall call = callWithOtherMinimum(rms);
     const GlassWindow best = call.cameras[0]->window();
     GlassWindow other = best;
     other.normal = Vec3d(call.otherMinima.ptr<double>());
