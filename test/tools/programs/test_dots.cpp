@@ -52,6 +52,12 @@ struct Tank
         refractiveProjectPoints(DOTS, r, t, cameras[camera], seen);
         return seen;
     }
+    Mat picture(int view, int camera, scenes::Random& random) const
+    {
+        Vec3d r, t;
+        moved(view, camera, r, t);
+        return drawn_dots::picture(DOTS, 0.6, r, t, cameras[camera], random);
+    }
 };
 
 void writeDots(const std::string& path)
@@ -85,12 +91,7 @@ TEST_CASE("refract_calib finds the dots of several levels in images, whatever na
     writeDots(f / "dots.csv");
     for (int c = 0; c < 2; c++)
         for (int view = 0; view < 3; view++)
-        {
-            Vec3d r, t;
-            tank.moved(view, c, r, t);
-            imwrite(f / format("%s_%d_view%d.png", c ? "b77" : "a12", 17*view + c, view),
-                    drawn_dots::picture(DOTS, 0.6, r, t, tank.cameras[c], random));
-        }
+            imwrite(f / format("%s_%d_view%d.png", c ? "b77" : "a12", 17*view + c, view), tank.picture(view, c, random));
     const std::string sources = " --glass='" + (f / "a12*.png") + "' --glass2='" + (f / "b77*.png") + "'";
     const ToolResult r = calibrate(f, sources + " --view-pattern='*_*_{}'");
     CAPTURE(r.out, r.err);
@@ -202,11 +203,7 @@ TEST_CASE("refract_measure and refract_check take a target of dots, as refract_c
     writeDots(f / "dots.csv");
     for (int c = 0; c < 2; c++)
         for (int view = 0; view < 3; view++)
-        {
-            Vec3d r, t;
-            tank.moved(view, c, r, t);
-            imwrite(f / format("%c%d.png", "ab"[c], view), drawn_dots::picture(DOTS, 0.6, r, t, tank.cameras[c], random));
-        }
+            imwrite(f / format("%c%d.png", "ab"[c], view), tank.picture(view, c, random));
     const std::string sources = " --glass='" + (f / "a*.png") + "' --glass2='" + (f / "b*.png") + "'";
     const std::string target = " --target=" + (f / "dots.csv");
     const ToolResult calibrated = calibrate(f, sources);

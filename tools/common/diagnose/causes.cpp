@@ -5,12 +5,9 @@
 #include "diagnose/rig_vector.hpp"
 #include "diagnose/value_causes.hpp"
 #include "calibrate/parameter_columns.hpp"
-#include "calibrate/units.hpp"
-#include "calibrate/window_face.hpp"
 #include "console/table.hpp"
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 using namespace cv;
 using namespace cv::refract;

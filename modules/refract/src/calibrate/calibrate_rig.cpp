@@ -6,13 +6,8 @@
 
 #include "calibrate/fit_arguments.hpp"
 #include "calibrate/fit_priors.hpp"
-#include "calibrate/calibration_error.hpp"
 #include "calibrate/refit.hpp"
-#include "start/pose_start.hpp"
-#include "start/rig_task.hpp"
-#include "math/covariance_matrix.hpp"
 #include "math/rotation.hpp"
-#include "window/place.hpp"
 
 namespace cv { namespace refract {
 
