@@ -20,6 +20,8 @@ ReducedCost::ReducedCost(Problem& problem)
             variable_.push_back(block);
     for (int block : variable_)
         cameras_ += problem.blocks()[block].kind != ParameterBlock::POSE;
+    if (problem.hasScene())
+        tree_ = treeOfViews(problem);
 }
 
 //! The problem to the state; false if it is there already.
@@ -51,13 +53,31 @@ static VectorXd moved(const ParameterBlock& block, const VectorXd& from, const V
     return to;
 }
 
+bool ReducedCost::isPose(size_t variable) const { return problem_.blocks()[variable_[variable]].kind == ParameterBlock::POSE; }
+
+//! @param turnOf by how much the rvec of a variable pose changes
+void ReducedCost::turnViews(const std::function<Vec3d(size_t)>& turnOf)
+{
+    std::vector<Vec3d> turns(problem_.viewCount());
+    for (size_t i = 0; i < variable_.size(); i++)
+        if (isPose(i))
+            turns[problem_.blocks()[variable_[i]].index] = turnOf(i);
+    if (anchor_->motion)
+        anchor_->motion->turn(turns);
+}
+
 void ReducedCost::setStep(const VectorXd& step)
 {
+    turnViews([&](size_t i) { return Vec3d(step.data() + anchor_->space.first[variable_[i]]); });
     for (size_t i = 0; i < variable_.size(); i++)
     {
         const ParameterBlock& block = problem_.blocks()[variable_[i]];
-        const int first = anchor_->space.first[variable_[i]], own = anchor_->space.columnsOf(variable_[i]);
-        Eigen::Map<VectorXd>(state_[i], block.values.size()) = moved(block, anchor_->values[i], step.segment(first, own));
+        const VectorXd own = step.segment(anchor_->space.first[variable_[i]], anchor_->space.columnsOf(variable_[i]));
+        Eigen::Map<VectorXd> state(state_[i], block.values.size());
+        if (isPose(i))
+            state = anchor_->motion->poseAfter(block.index, own);
+        else
+            state = moved(block, anchor_->values[i], own);
     }
 }
 
@@ -71,24 +91,38 @@ void ReducedCost::restore()
     isCurrent_ = isAnchor_ = true;
 }
 
-void ReducedCost::predictInner()
+//! The step of the free coordinates that leads from the anchor to where the problem is.
+VectorXd ReducedCost::stepFromAnchor()
 {
-    VectorXd change = VectorXd::Zero(anchor_->space.count);
+    turnViews([&](size_t i) { return Vec3d(problem_.blocks()[variable_[i]].values.data()) - Vec3d(anchor_->values[i].data()); });
+    VectorXd step = VectorXd::Zero(anchor_->space.count);
     for (size_t i = 0; i < variable_.size(); i++)
     {
-        const int block = variable_[i], own = anchor_->space.columnsOf(block);
-        change.segment(anchor_->space.first[block], own) =
-            transposeTimesVector(anchor_->space.bases[block], problem_.blocks()[block].values - anchor_->values[i]);
+        const ParameterBlock& block = problem_.blocks()[variable_[i]];
+        auto own = step.segment(anchor_->space.first[variable_[i]], anchor_->space.columnsOf(variable_[i]));
+        if (isPose(i))
+            own = anchor_->motion->stepTo(block.index, block.values);
+        else
+            own = transposeTimesVector(anchor_->space.bases[variable_[i]], block.values - anchor_->values[i]);
     }
+    return step;
+}
+
+void ReducedCost::predictInner()
+{
+    const VectorXd step = stepFromAnchor();
     VectorXd inner = anchor_->inner;
-    int at = 0;
+    int at = 0, cluster = 0;
     for (const InnerBlock& block : anchor_->information.inner)
     {
         const int size = (int)block.byOuter.rows();
         VectorXd own(block.columns.size());
         for (size_t k = 0; k < block.columns.size(); k++)
-            own[k] = change[block.columns[k]];
-        inner.segment(at, size) += timesVector(block.byOuter, own);
+            own[k] = step[block.columns[k]];
+        const VectorXd change = timesVector(block.byOuter, own);
+        if (anchor_->motion)
+            anchor_->motion->bendPoints(problem_, cluster++, inner.segment(at, size));
+        inner.segment(at, size) += change;
         at += size;
     }
     setInnerValues(problem_, inner);
@@ -118,7 +152,7 @@ bool ReducedCost::linearize()
         return true;
     if (anchor_)                    // what it predicts is used up, and as large as all else together
         std::vector<InnerBlock>().swap(anchor_->information.inner);
-    std::unique_ptr<Anchor> anchor(new Anchor{ {}, FreeSpace(problem_, false), innerValues(problem_), squaredError_,
+    std::unique_ptr<Anchor> anchor(new Anchor{ {}, nullptr, FreeSpace(problem_, false), innerValues(problem_), squaredError_,
                                                informationOf(problem_, false) });
     const Information& information = anchor->information;
     if (!information.effect.allFinite() || !information.root.allFinite() || !information.residual.allFinite() ||
@@ -126,6 +160,8 @@ bool ReducedCost::linearize()
         return false;
     for (int block : variable_)
         anchor->values.push_back(problem_.blocks()[block].values);
+    if (problem_.hasScene())
+        anchor->motion.reset(new ViewMotion(problem_, tree_));
     anchor_ = std::move(anchor);
     isAnchor_ = true;
     return true;

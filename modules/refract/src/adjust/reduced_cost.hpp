@@ -6,8 +6,10 @@
 #define OPENCV_REFRACT_REDUCED_COST_HPP
 
 #include "adjust/eliminate.hpp"
+#include "adjust/view_motion.hpp"
 #include <ceres/cost_function.h>
 #include <ceres/evaluation_callback.h>
+#include <functional>
 
 namespace cv { namespace refract {
 
@@ -58,12 +60,16 @@ private:
     struct Anchor
     {
         std::vector<Eigen::VectorXd> values;        //!< of the variable blocks
+        std::unique_ptr<ViewMotion> motion;         //!< of a scene
         FreeSpace space;
         Eigen::VectorXd inner;
         double squaredError;
         Information information;
     };
     bool move();
+    bool isPose(size_t variable) const;
+    void turnViews(const std::function<Vec3d(size_t)>& turnOf);
+    Eigen::VectorXd stepFromAnchor();
     void predictInner();
     std::vector<int> blocksOf(int group) const;
     RowMajorMatrix rootOf(int group, int variable) const;
@@ -72,6 +78,7 @@ private:
     Problem& problem_;
     std::vector<int> variable_;
     int cameras_;                       //!< of these the first ones; the others are poses
+    std::vector<ViewEdge> tree_;        //!< of a scene's views
     std::vector<double*> state_;
     std::unique_ptr<Anchor> anchor_;
     bool isPossible_;                   //!< there is a cost where it was asked for last
