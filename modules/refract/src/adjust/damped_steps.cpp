@@ -15,6 +15,8 @@ const double LEAST = 1e-14;         // of the damping: below it is rounding
 const double MOST = 1e16;
 const double FIRST_AFTER_FAILURE = 1e-8;
 const double RESIDUAL_ROUNDING = 1e-12;     // px
+const double LEFT_BY_POINTS = 1e-12;        // of the squares, by steps of their own (StepControl)
+const double LEFT_OF_NOISE = 5e-7;          // of the variance; a minimum is where 1e-6 is left
 
 //! @param ratio of the gain to what was foretold
 double dampingAfter(double damping, double ratio)
@@ -38,7 +40,8 @@ void DampedSteps::run(ReducedCost& cost)
         cost.setStep(dampedStep(cost.information(), damping, foretold));
         // Too little to matter, or to be seen: of exact data, also of those that were printed with some digits, it is rounding.
         const double rounding = 2*RESIDUAL_ROUNDING*std::sqrt(squares) + RESIDUAL_ROUNDING*RESIDUAL_ROUNDING*equations;
-        if (foretold <= std::max(squares*std::min(0.1*change, 1e-7/equations), rounding))
+        const double negligible = std::max(near, std::min(std::max(0.1*change, LEFT_BY_POINTS), LEFT_OF_NOISE/equations));
+        if (foretold <= std::max(squares*negligible, rounding))
         {
             cost.restore();
             isConverged = damping <= WEAK;

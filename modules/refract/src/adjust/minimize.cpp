@@ -36,6 +36,7 @@ struct TrustRegion
     int iterations = 0;     //!< at most; out: how many were made
     ceres::TerminationType outcome = ceres::NO_CONVERGENCE;     //!< out
     bool isIdle = false;    //!< out: the same again would not move anything
+    double near = 0;        //!< of a scene's cost, relative: what no step is made for; 0: down to what cannot matter
 
     void solve(ceres::Problem& problem, bool isSparse);
 };
@@ -55,6 +56,8 @@ void TrustRegion::solve(ceres::Problem& problem, bool isSparse)
     options.num_threads = 1;        // the cost has its own
     // At bounds Ceres searches along each step. What is not found soon is not found: the step is refused, and the next is shorter.
     options.max_num_line_search_step_size_iterations = 3;
+    if (isSparse)                   // derivatives of where it is tried are dear, and what is predicted from there is far off
+        options.line_search_interpolation_type = ceres::QUADRATIC;
     options.logging_type = ceres::SILENT;
     ceres::Solver::Summary summary;
     {
@@ -159,7 +162,7 @@ void Minimization::solve(TrustRegion& region, const std::vector<double*>& state)
 
 void Minimization::descend(TrustRegion& region)
 {
-    DampedSteps steps = { (double)problem_.equationCount(), region.change, 1/region.radius, region.iterations, false };
+    DampedSteps steps = { (double)problem_.equationCount(), region.change, 1/region.radius, region.iterations, false, region.near };
     const double begin = cost_->squaredError(), before = region.radius;
     steps.run(*cost_);
     region.iterations = std::max(1, steps.iterations);
@@ -295,6 +298,7 @@ FitOutcome Minimization::run(const TermCriteria& criteria, double& damping)
     const int IDLE = 40;                // turns of a single step in a row: more would not help either
     const TrustRegion fresh[] = { { ceres::LEVENBERG_MARQUARDT, change, radius }, { ceres::DOGLEG, change, radius } };
     TrustRegion regions[] = { fresh[0], fresh[1] };
+    regions[0].near = stopsByChange ? 0 : criteria.epsilon;
     regions[0].radius = std::max(1/damping, radius);        // exact data end where no step gains anything, whatever the damping
     int left = criteria.maxCount, idle = 0;
     for (int turn = 0; left > 0 && idle < IDLE && !(regions[0].isIdle && regions[1].isIdle); turn = 1 - turn)
@@ -305,7 +309,7 @@ FitOutcome Minimization::run(const TermCriteria& criteria, double& damping)
             break;
         damping = 1/regions[0].radius;
         const bool isHeldAnew = region.outcome != ceres::FAILURE && isOnBound() && holdAtBounds();
-        if (region.outcome == ceres::CONVERGENCE && !isHeldAnew && isAtMinimum())
+        if (region.outcome == ceres::CONVERGENCE && !isHeldAnew && (region.near > 0 || isAtMinimum()))
             return FitOutcome();
         left -= region.iterations;
         idle = region.iterations > 1 ? 0 : idle + 1;
