@@ -21,8 +21,14 @@ public:
     /** Uses these observations, and none that the others leave without meaning, which it takes out of inliers.
     @return whether what is left determines what is free */
     virtual FitOutcome setInliers(Masks& inliers) = 0;
-    //! Tries to bring back what setInliers took out; false if there is nothing. @param scale of a pixel coordinate
-    virtual bool bringBack(Masks& inliers, double scale) { (void)inliers; (void)scale; return false; }
+    /** Tries to bring back what setInliers took out; false if there is nothing.
+    @param scale of a pixel coordinate
+    @param returned per scene point: it came back before, and does not again; in and out, empty at first */
+    virtual bool bringBack(Masks& inliers, double scale, std::vector<uchar>& returned)
+    {
+        (void)inliers; (void)scale; (void)returned;
+        return false;
+    }
     //! Which observations may have a say.
     virtual Masks candidates() const = 0;
 };
@@ -59,7 +65,7 @@ public:
     SceneOutliers(Problem& problem, const ScaleSources& scale) : problem_(problem), scale_(scale) {}
     double rootWeight(double ratio) const override;
     FitOutcome setInliers(Masks& inliers) override;
-    bool bringBack(Masks& inliers, double scale) override;
+    bool bringBack(Masks& inliers, double scale, std::vector<uchar>& returned) override;
     Masks candidates() const override;
 
     //! NO_SCALE or TOO_FEW_EQUATIONS where the observations in use do not determine what is free.

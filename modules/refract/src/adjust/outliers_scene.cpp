@@ -137,16 +137,20 @@ bool SceneOutliers::bringBackWhatLengthsAllow(const std::vector<Point3d>& points
 
 /** Points that are not in use, where their rays come closest; while that is not near all of them, the observation that is
 farthest off is left out. */
-bool SceneOutliers::bringBack(Masks& inliers, double scale)
+bool SceneOutliers::bringBack(Masks& inliers, double scale, std::vector<uchar>& returned)
 {
     const int ROUNDS = 10;
     std::vector<Point3d> points = problem_.scene().points();
     const int count = (int)points.size();
+    returned.resize(count, 0);
     const Masks before = inliers;
     Masks trial = inliers;
     for (size_t i = 0; i < trial.size(); i++)
         for (size_t row = 0; row < trial[i].size(); row++)
-            trial[i][row] = !std::isfinite(points[problem_.images()[i].points.index[row]].x);
+        {
+            const int point = problem_.images()[i].points.index[row];
+            trial[i][row] = !std::isfinite(points[point].x) && !returned[point];
+        }
     bool found = false;
     for (int round = 0; round < ROUNDS; round++)
     {
@@ -175,6 +179,7 @@ bool SceneOutliers::bringBack(Masks& inliers, double scale)
                 continue;
             }
             points[point] = midpoints[point];
+            returned[point] = 1;
             found = true;
         }
         // What has come back is decided.

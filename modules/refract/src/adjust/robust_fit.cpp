@@ -108,7 +108,7 @@ static double medianScale(const std::vector<double>& scales, const std::vector<s
 FitOutcome RobustFit::reweightGradually()
 {
     const int ROUNDS = 30;
-    const TermCriteria few(TermCriteria::COUNT, 5, 0);
+    const TermCriteria few(TermCriteria::COUNT, 5, problem_.hasScene() ? 1e-3 : 0);
     double last = std::numeric_limits<double>::infinity();
     FitOutcome outcome;
     for (int round = 0; round < ROUNDS && outcome.isUsable(); round++)
@@ -293,7 +293,7 @@ FitOutcome RobustFit::rejectOutliers()
         outcome = chooseFirstInliers();
     if (outcome.converged())
         outcome = rejectUntilStable();
-    if (outcome.isUsable() && outliers_.bringBack(inliers_, scale_))
+    if (outcome.isUsable() && outliers_.bringBack(inliers_, scale_, returned_))
         outcome = rejectUntilStable();
     return outcome;
 }

@@ -45,6 +45,7 @@ private:
     double damping_;                    //!< of a scene's next step
     Masks inliers_;
     std::vector<std::vector<uchar> > timesOut_;
+    std::vector<uchar> returned_;       //!< per scene point
 };
 
 }} // namespace
