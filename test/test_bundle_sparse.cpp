@@ -240,7 +240,7 @@ TEST_CASE("Poses and points of a strip are as uncertain as the whole inverse say
     REQUIRE(covariance.compute(*bundle, sigma*sigma, 0).converged());
 
     const FreeSpace space(*bundle);
-    CHECK(informationOf(*bundle).poses.factor.column(0).rows.size() < 6);        // sparse
+    CHECK(informationOf(*bundle).poses.factor.column(0).rows.size() < 7);        // sparse: of eight poses
     const int outer = space.count, count = outer + bundle->scene().coordinateCount();
     MatrixXd information = MatrixXd::Zero(count, count);
     std::vector<int> firstOfPoint(scene.points.size(), -1);

@@ -10,6 +10,8 @@ whenever the cameras have moved. */
 #include "adjust/other_points.hpp"
 #include "adjust/ray_midpoints.hpp"
 #include "math/robust_scale.hpp"
+#include "start/multi_start.hpp"
+#include "window/place.hpp"
 
 namespace cv { namespace refract {
 
@@ -167,12 +169,13 @@ private:
     std::vector<std::vector<bool> > isFree_;
 };
 
-bool arePlacesFree(const Problem& problem)
+//! Whether a window is where another minimum may be.
+bool haveWindowsTurned(const Rig& before, const Rig& after)
 {
-    return std::any_of(problem.blocks().begin(), problem.blocks().end(), [](const ParameterBlock& block)
-    {
-        return block.kind == ParameterBlock::PLACE && std::count(block.isFree.begin(), block.isFree.end(), true) > 0;
-    });
+    for (int c = 0; c < before.count(); c++)
+        if (angleBetweenPlaces(before.cameras[c].window(), after.cameras[c].window()) > ROUGHLY_SAME_ANGLE)
+            return true;
+    return false;
 }
 
 //! In variances; what is left out is at the cut.
@@ -196,8 +199,9 @@ FitOutcome searchBundle(Problem& problem, const SceneOutliers& outliers, RobustF
 FitOutcome searchRobustBundle(Problem& problem, const SceneOutliers& outliers, RobustFit& fit, RobustFit& another)
 {
     const Snapshot start(problem);
+    const Rig rig = problem.rig();
     const FitOutcome outcome = approachAndRun(problem, outliers, fit);
-    if (!arePlacesFree(problem))
+    if (outcome.converged() && !haveWindowsTurned(rig, problem.rig()))
         return outcome;
     const Snapshot found(problem);
     const double variance = varianceOf(problem);
