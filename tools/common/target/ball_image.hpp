@@ -1,0 +1,31 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#ifndef REFRACT_TOOLS_BALL_IMAGE_HPP
+#define REFRACT_TOOLS_BALL_IMAGE_HPP
+
+#include "target/refine_dots.hpp"
+
+/* Balls that are moved before cameras which do not move: what else is in a picture is there at other moments, too. */
+namespace tools {
+
+struct BallImage
+{
+    DotImage outline;           //!< the middle of its ellipse is not quite where the ball's centre is seen
+    double std;                 //!< of a coordinate of that middle, px, as the noise of the image has it
+    double contrast;            //!< grey levels between ball and background
+};
+
+/** What an image shows where nothing moves: of each pixel the median. Things that stand still, lamps and what panes mirror of them, are
+part of it. @param images 8-bit grey, of equal size */
+cv::Mat stillBackground(const std::vector<cv::Mat>& images);
+
+/** Round things that are not in the background, those with the most contrast first; what is as long as it is not round, or cut by the
+image's edge, is none. The outline is the ellipse that explains best, in the sense of least squares, every pixel round it: of a blurred
+edge between the background and a ball which may be brighter on one side.
+@param bright or darker than the background */
+std::vector<BallImage> ballsIn(const cv::Mat& grey, const cv::Mat& background, bool bright);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_BALL_IMAGE_HPP
