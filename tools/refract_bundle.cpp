@@ -10,6 +10,8 @@
 #include "console/outputs.hpp"
 #include "formats/point_table.hpp"
 #include "match/moved_rig.hpp"
+#include "match/scene_matches.hpp"
+#include "match/wand_matches.hpp"
 
 #include <iostream>
 #include <sstream>
@@ -18,6 +20,7 @@ static const char MANUAL[] = R"(Calibrates a rig behind its windows without a ta
 wand that is waved, particles, any matches. Cameras, windows, R, T and points are one fit.
 
   refract_bundle start.yml --points=matches.csv --lengths=lengths.csv --out=calib.yml       a rig that was never calibrated
+  refract_bundle start.yml --wand=200,0.1 'left/*.png' 'right/*.png' --out=calib.yml                 the same, of images of a wand
   refract_bundle calib.yml --points=matches.csv --out=better.yml                            one that was: what it knows has its say
   refract_bundle calib.yml --points=matches.csv --turned=0.3 --out=again.yml                a camera was touched meanwhile
   refract_bundle calib.yml --points=matches.csv --free=normal --out=new.yml                 its windows were taken out meanwhile
@@ -35,6 +38,12 @@ well each pixel is known; without, all are alike.
 
 lengths.csv: [image,]id1,id2,length,std, distances between points, with one standard deviation; without image a row is of all images
 that show both points. Rows with equal length and std are one object: its error is one, however many moments there are.
+
+--wand=LENGTH[,STD] IMAGES: in place of both tables a quoted glob, numbered images or a video of each camera, of a stick with a ball
+at each end, LENGTH between their centres (STD: 0.1 % of it). Images of one moment have equal names but for the camera's part. Balls are
+round, 4 pixels wide or more, brighter than what is behind them or darker, and move; what stands still, as lamps and their images in the
+pane, does not count. The two balls are those whose rays meet and that are LENGTH apart; a moment where a ball is hidden, or where several
+fit, is left out and counted. --points-out has their pixels (a is the larger ball), and --points reads it.
 
 Three kinds of parameters. What --free names starts at the values of start.yml and follows from the matches alone. What has a
 variance in start.yml (what refract_calib wrote has a covariance) is estimated within that; where it has none, thickness, index,
@@ -63,7 +72,8 @@ using namespace tools;
 
 struct Options
 {
-    std::string start, points, lengths, out, pointsOut, posesOut, colmapOut, summary;
+    std::string start, points, wand, lengths, out, pointsOut, posesOut, colmapOut, summary;
+    std::vector<std::string> images;
     BundleOptions bundle;
     PixelOrigin origin;
     SurveyOptions survey;
@@ -78,9 +88,13 @@ void addOptions(OptionParser& parser, Options& o)
 {
     parser.add("start.yml", o.start, "the rig to start from").required();
     const Option points = parser.add("--points", o.points, "what the cameras saw: [image,]id,u1,v1,u2,v2,...");
-    const Option colmap = parser.add("--colmap", o.survey.model, "or a folder with a model of COLMAP, of raw images").excludes(points);
+    const Option images = parser.add("IMAGES", o.images, "with --wand: of each camera a quoted glob or a video");
+    const Option wand = parser.add("--wand", o.wand, "LENGTH[,STD] of a wand with two balls, which IMAGES show").needs(images)
+        .excludes(points);
+    const Option colmap = parser.add("--colmap", o.survey.model, "or a folder with a model of COLMAP, of raw images").excludes(points)
+        .excludes(wand);
     addYFrom(parser, o.origin.yFrom).needs(points);
-    parser.add("--lengths", o.lengths, "known distances between points: [image,]id1,id2,length,std");
+    parser.add("--lengths", o.lengths, "known distances between points: [image,]id1,id2,length,std").excludes(wand);
     parser.add("--free", o.bundle.free, "what the matches alone must tell; none: nothing").delimiter(',')
         .check(isMember(freeNames()));
     parser.add("--turned", o.turned.cameras, "of a rig that was calibrated: each camera may have turned about its own centre since, by so "
@@ -127,7 +141,8 @@ Calibration resultOf(const Options& o, const BundleAdjustment& adjustment, const
     file.verdict = findings.verdict();
     file.contradictions = findings.contradictions;
     file.command = command.line();
-    std::vector<std::string> inputs = {o.start, o.points, o.lengths, o.survey.positions};
+    std::vector<std::string> inputs = o.images;
+    inputs.insert(inputs.end(), {o.start, o.points, o.lengths, o.survey.positions});
     inputs.insert(inputs.end(), o.bundle.places.files().begin(), o.bundle.places.files().end());
     file.time = timeOfFiles(inputs);
     return file;
@@ -163,13 +178,43 @@ int ended(const Options& o, const BundleAdjustment& adjustment, const BundleFind
     return findings.pass() ? DONE : LIMIT_NOT_MET;
 }
 
+//! What the cameras saw, and what is known of it.
+struct Observations
+{
+    Matches matches;
+    GivenLengths lengths;
+    std::string said;               //!< of how it was found; empty: it was given
+};
+
+Observations readTables(const Options& o, const Calibration& file)
+{
+    if (!o.images.empty())
+        throw Failure("'" + o.images[0] + "' is one word too many: images are for --wand=LENGTH, which says what they show");
+    if (o.points.empty())
+        throw Failure("give --points=matches.csv, what the cameras saw, --wand=LENGTH and images, or --colmap=FOLDER of a rig that moved");
+    Observations seen;
+    seen.matches = readMatches(o.points, file, o.start, o.origin.yFrom);
+    if (!o.lengths.empty())
+        seen.lengths = readLengths(o.lengths, o.points, seen.matches);
+    return seen;
+}
+
+Observations findWand(const Options& o, const Calibration& file, const BundleStart& start, bool quiet)
+{
+    const Wand wand = parseWand(o.wand);
+    std::vector<Frames> frames = framesOf(o.images, file, o.start);
+    const WandMatches found = matchWand(start, o.start, findBalls(file, frames, quiet), wand);
+    return {found.matches, found.lengths, textOf(found)};
+}
+
 int bundleMatches(const Options& options, const Calibration& file, const Command& command)
 {
-    if (options.points.empty())
-        throw Failure("give --points=matches.csv, what the cameras saw, or --colmap=FOLDER of a rig that moved");
-    const Matches matches = readMatches(options.points, file, options.start, options.origin.yFrom);
-    const GivenLengths lengths = options.lengths.empty() ? GivenLengths() : readLengths(options.lengths, options.points, matches);
+    Observations seen = options.wand.empty() ? readTables(options, file) : Observations();
     const BundleStart start = startWith(options, options.bundle, file);
+    if (!options.wand.empty())
+        seen = findWand(options, file, start, command.quiet());
+    const Matches& matches = seen.matches;
+    const GivenLengths& lengths = seen.lengths;
     requireScale(start, options.start, matches, lengths);
     requireSameMoments(start, matches);
     const BundleAdjustment adjustment = adjustBundle(start, matches, lengths, options.robust);
@@ -184,7 +229,10 @@ int bundleMatches(const Options& options, const Calibration& file, const Command
         writeText(options.summary, bundleJson(matches, adjustment, findings, command.line(), unit));
     writeCalibration(options.out, resultOf(options, adjustment, findings, file, unit, command));
     if (!command.quiet())
+    {
         printBundle(std::cout, matches, adjustment, findings, unit);
+        std::cout << seen.said;
+    }
     return ended(options, adjustment, findings);
 }
 
@@ -219,7 +267,8 @@ void refuseOverwriting(const Options& o, const std::string& settings)
 {
     std::vector<Output> outputs = {{"--out", o.out, OUTPUT_CALIBRATION}, {"--points-out", o.pointsOut, OUTPUT_TEXT},
                                    {"--poses-out", o.posesOut, OUTPUT_TEXT}, {"--summary", o.summary, OUTPUT_TEXT}};
-    std::vector<std::string> inputs = {o.start, o.points, o.lengths, o.survey.positions, settings};
+    std::vector<std::string> inputs = o.images;
+    inputs.insert(inputs.end(), {o.start, o.points, o.lengths, o.survey.positions, settings});
     inputs.insert(inputs.end(), o.bundle.places.files().begin(), o.bundle.places.files().end());
     for (bool isBinary : {true, false})
     {

@@ -124,6 +124,8 @@ std::string pointsCsv(const Matches& matches, const BundleAdjustment& adjustment
     csv << "image,id";
     for (int c = 1; c <= matches.cameraCount(); c++)
         csv << ",u" << c << ",v" << c;
+    for (size_t c = 1; c <= matches.stds.size(); c++)
+        csv << ",std" << c;
     csv << ",x,y,z,sx,sy,sz,status\n";
     for (size_t i = 0; i < matches.names.size(); i++)
     {
@@ -132,6 +134,8 @@ std::string pointsCsv(const Matches& matches, const BundleAdjustment& adjustment
         std::vector<double> numbers;
         for (const std::vector<Point2d>& ofCamera : matches.pixels)
             numbers.insert(numbers.end(), {ofCamera[i].x, ofCamera[i].y});
+        for (const std::vector<double>& ofCamera : matches.stds)
+            numbers.push_back(ofCamera[i]);
         const Point3d X = adjustment.points[i];
         const Vec3d s = adjustment.sigma[i];
         numbers.insert(numbers.end(), {X.x, X.y, X.z, s[0], s[1], s[2]});

@@ -11,7 +11,7 @@
 /* What refract_bundle writes and says. */
 namespace tools {
 
-//! points.csv, with the columns of refract_measure. @param image of points without one
+//! points.csv, with the columns of refract_measure, and std1,std2,... where the matches have them. @param image of points without one
 std::string pointsCsv(const Matches& matches, const BundleAdjustment& adjustment, const std::string& image);
 
 //! All that the terminal says, and more of it.

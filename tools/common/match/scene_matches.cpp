@@ -48,30 +48,6 @@ ScaledMatches matchesOfChains(const std::string& moment, const std::vector<Featu
     return result;
 }
 
-std::vector<Mat> imagesOf(const Moment& moment, const Calibration& calibration, std::vector<Frames>& cameras)
-{
-    std::vector<Mat> images(cameras.size());
-    for (int c = 0; c < (int)cameras.size(); c++)
-        if (moment.frames[c] >= 0)
-            images[c] = greyFrame(cameras[c], moment.frames[c], calibration, c);
-    return images;
-}
-
-std::vector<Moment> sharedMoments(const std::vector<Frames>& cameras)
-{
-    std::vector<const Frames*> all;
-    for (const Frames& frames : cameras)
-        all.push_back(&frames);
-    std::vector<Moment> moments = momentsOf(all);
-    const auto isAlone = [](const Moment& m) {
-        return std::count_if(m.frames.begin(), m.frames.end(), [](int f) { return f >= 0; }) < 2; };
-    moments.erase(std::remove_if(moments.begin(), moments.end(), isAlone), moments.end());
-    if (moments.empty())
-        throw Failure("no image of '" + cameras[0].source() + "' has the name of one of another camera: images of one moment need equal "
-                      "names");
-    return moments;
-}
-
 void setStds(const MatchNoise& noise, ScaledMatches& scaled)
 {
     scaled.matches.stds = scaled.scales;
@@ -148,6 +124,30 @@ std::vector<Frames> framesOf(const std::vector<std::string>& sources, const Cali
     for (const std::string& source : sources)
         frames.emplace_back(source);
     return frames;
+}
+
+std::vector<Mat> imagesOf(const Moment& moment, const Calibration& calibration, std::vector<Frames>& cameras)
+{
+    std::vector<Mat> images(cameras.size());
+    for (int c = 0; c < (int)cameras.size(); c++)
+        if (moment.frames[c] >= 0)
+            images[c] = greyFrame(cameras[c], moment.frames[c], calibration, c);
+    return images;
+}
+
+std::vector<Moment> sharedMoments(const std::vector<Frames>& cameras)
+{
+    std::vector<const Frames*> all;
+    for (const Frames& frames : cameras)
+        all.push_back(&frames);
+    std::vector<Moment> moments = momentsOf(all);
+    const auto isAlone = [](const Moment& m) {
+        return std::count_if(m.frames.begin(), m.frames.end(), [](int f) { return f >= 0; }) < 2; };
+    moments.erase(std::remove_if(moments.begin(), moments.end(), isAlone), moments.end());
+    if (moments.empty())
+        throw Failure("no image of '" + cameras[0].source() + "' has the name of one of another camera: images of one moment need equal "
+                      "names");
+    return moments;
 }
 
 SceneMatcher::SceneMatcher(const Calibration& calibration, const SceneOptions& options)

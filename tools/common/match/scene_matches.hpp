@@ -17,6 +17,12 @@ namespace tools {
 calibration, for the text */
 std::vector<Frames> framesOf(const std::vector<std::string>& sources, const Calibration& calibration, const std::string& filename);
 
+//! That two cameras have images of. Throws Failure if there are none.
+std::vector<Moment> sharedMoments(const std::vector<Frames>& cameras);
+
+//! What all cameras saw at a moment, 8-bit grey; empty: nothing.
+std::vector<cv::Mat> imagesOf(const Moment& moment, const Calibration& calibration, std::vector<Frames>& cameras);
+
 struct SceneOptions
 {
     cv::Vec2d depth;                //!< z of the scene in the frame of camera 1
@@ -65,7 +71,7 @@ private:
 //! Of all moments that two cameras have images of.
 SceneMatches matchScene(const Calibration& calibration, std::vector<Frames>& cameras, const SceneOptions& options, bool quiet);
 
-/** What all cameras saw at a moment, 8-bit grey; empty: nothing. @param stem of the moment */
+//! The same by the moment's stem.
 std::vector<cv::Mat> imagesOfMoment(const Calibration& calibration, std::vector<Frames>& cameras, const std::string& stem);
 
 /** The baseline: RMS of the residuals of the same matches, px, where windows are ignored and the cameras' places fitted to the matches.

@@ -1,0 +1,88 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#ifndef REFRACT_TOOLS_WAND_FINDER_HPP
+#define REFRACT_TOOLS_WAND_FINDER_HPP
+
+#include "calibrate/rig_model.hpp"
+#include "match/chains.hpp"
+#include "target/ball_image.hpp"
+#include <cmath>
+
+/* Which of the balls that cameras see at one moment are the two of a wand. */
+namespace tools {
+
+struct Wand
+{
+    double length, std;                 //!< between the centres of its balls
+};
+
+using Balls = std::vector<BallImage>;
+
+//! A ball as some cameras see it.
+struct BallPoint
+{
+    Chain balls;
+    cv::Point3d X;                          //!< in camera 1
+    double squares = 0.;                //!< px^2, of the distances of its projections
+    int count = 0;                      //!< cameras
+    std::vector<cv::Point2d> centers = {};  //!< per camera
+    double radius = 0.;
+
+    double rms() const { return std::sqrt(squares/count); }
+    bool sharesBallWith(const BallPoint& other) const
+    {
+        for (size_t c = 0; c < balls.size(); c++)
+            if (balls[c] >= 0 && balls[c] == other.balls[c])
+                return true;
+        return false;
+    }
+    bool isPartOf(const BallPoint& other) const
+    {
+        for (size_t c = 0; c < balls.size(); c++)
+            if (balls[c] >= 0 && balls[c] != other.balls[c])
+                return false;
+        return count < other.count;
+    }
+};
+
+//! Two balls that may be the wand's.
+struct WandPlace
+{
+    BallPoint a, b;
+
+    int count() const { return a.count + b.count; }
+    double rms() const { return std::sqrt((a.squares + b.squares)/count()); }
+    double length() const { return cv::norm(a.X - b.X); }
+};
+
+struct WandLimits
+{
+    double rms;                     //!< px
+    double length;                  //!< by which it may be longer or shorter, of its length
+};
+
+class WandFinder
+{
+public:
+    //! @param balls per camera
+    WandFinder(const RigModel& rig, const std::vector<Balls>& balls) : rig_(rig), balls_(balls) {}
+
+    //! Those that most cameras see first, of these the one whose rays meet best.
+    std::vector<WandPlace> places(const Wand& wand, const WandLimits& limits) const;
+
+private:
+    int cameras() const { return (int)balls_.size(); }
+    std::vector<Chain> pairs() const;
+    std::vector<BallPoint> triangulated(const std::vector<Chain>& chains) const;
+    Chain extended(const BallPoint& point, double reach) const;
+    bool measure(BallPoint& point) const;
+    std::vector<BallPoint> pointsWithin(double tolerance) const;
+
+    const RigModel& rig_;
+    const std::vector<Balls>& balls_;
+};
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_WAND_FINDER_HPP

@@ -1,0 +1,258 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#include "match/wand_matches.hpp"
+#include "bundle/bundle_adjustment.hpp"
+#include "console/failure.hpp"
+#include "console/numbers.hpp"
+#include "console/progress.hpp"
+#include "match/scene_matches.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+using namespace cv;
+
+namespace tools {
+
+namespace {
+
+const double NaN = std::numeric_limits<double>::quiet_NaN();
+const int FEWEST = 8;               // moments, of which a fit can be made
+const int MOST_LATE = 3;            // images, by which cameras may be out of step
+
+double medianOf(std::vector<double> values)
+{
+    if (values.empty())
+        return NaN;
+    std::nth_element(values.begin(), values.begin() + (std::ptrdiff_t)values.size()/2, values.end());
+    return values[values.size()/2];
+}
+
+//! Per camera: moments spread over all, as many as tell what stands still.
+std::vector<Mat> backgroundsOf(const Calibration& calibration, std::vector<Frames>& cameras, const std::vector<Moment>& moments)
+{
+    const int ENOUGH = 15;
+    std::vector<std::vector<Mat>> some(cameras.size());
+    const int step = std::max(1, (int)moments.size()/ENOUGH);
+    for (int m = 0; m < (int)moments.size(); m += step)
+    {
+        const std::vector<Mat> images = imagesOf(moments[m], calibration, cameras);
+        for (size_t c = 0; c < cameras.size(); c++)
+            if (!images[c].empty())
+                some[c].push_back(images[c]);
+    }
+    std::vector<Mat> backgrounds;
+    for (const std::vector<Mat>& images : some)
+        backgrounds.push_back(images.empty() ? Mat() : stillBackground(images));
+    return backgrounds;
+}
+
+//! Whether two cameras see two balls or more.
+bool mayHaveWand(const std::vector<Balls>& balls)
+{
+    return std::count_if(balls.begin(), balls.end(), [](const Balls& ofCamera) { return ofCamera.size() > 1; }) > 1;
+}
+
+int withWand(const BallSightings& seen) { return (int)std::count_if(seen.balls.begin(), seen.balls.end(), mayHaveWand); }
+
+/* All moments against a rig. */
+class WandSearch
+{
+public:
+    WandSearch(const BallSightings& seen, const Wand& wand) : seen_(seen), wand_(wand), clear_(seen.balls)
+    {
+        for (std::vector<Balls>& balls : clear_)
+            for (Balls& ofCamera : balls)
+                if (ofCamera.size() != 2)
+                    ofCamera.clear();
+        if (std::count_if(clear_.begin(), clear_.end(), mayHaveWand) < FEWEST)
+            clear_ = seen.balls;
+    }
+
+    //! What a rig makes of the moments, medians; NaN: nothing of most of them. Where enough show two balls and no more, of these.
+    struct Usual
+    {
+        double miss;            //!< px, RMS of a wand
+        double length;          //!< over the wand's
+    };
+
+    //! @param camera whose images are taken so many moments later
+    Usual usual(const RigModel& rig, const WandLimits& limits, int camera = 0, int later = 0) const
+    {
+        std::vector<double> misses, lengths;
+        int looked = 0;
+        for (int m = 0; m < (int)seen_.moments.size(); m++)
+        {
+            const std::vector<Balls> balls = inStep(m, camera, later);
+            if (!mayHaveWand(balls))
+                continue;
+            const std::vector<WandPlace> places = WandFinder(rig, balls).places(wand_, limits);
+            const auto best = std::min_element(places.begin(), places.end(), [](const WandPlace& p, const WandPlace& q) {
+                return p.rms() < q.rms(); });
+            looked++;
+            if (best == places.end())
+                continue;
+            misses.push_back(best->rms());
+            lengths.push_back(best->length()/wand_.length);
+        }
+        return (int)misses.size() < std::max(FEWEST, looked/2) ? Usual{NaN, NaN} : Usual{medianOf(misses), medianOf(lengths)};
+    }
+
+    WandMatches matches(const RigModel& rig, const WandLimits& limits) const
+    {
+        WandMatches found;
+        found.moments = (int)seen_.moments.size();
+        found.matches.pixels.resize(rig.cameras.size());
+        found.matches.stds.resize(rig.cameras.size());
+        for (int m = 0; m < found.moments; m++)
+        {
+            const std::vector<WandPlace> places = WandFinder(rig, seen_.balls[m]).places(wand_, limits);
+            if (places.empty())
+                (mayHaveWand(seen_.balls[m]) ? found.unfit : found.unseen)++;
+            else if (places.size() > 1 && places[0].count() == places[1].count())
+                found.unclear++;
+            else
+                add(m, places[0], found);
+        }
+        found.lengths.objects = 1;
+        return found;
+    }
+
+private:
+    std::vector<Balls> inStep(int moment, int camera, int later) const
+    {
+        std::vector<Balls> balls = clear_[moment];
+        const int other = moment + later;
+        balls[camera] = other < 0 || other >= (int)clear_.size() ? Balls() : clear_[other][camera];
+        return balls;
+    }
+
+    void add(int moment, const WandPlace& place, WandMatches& found) const
+    {
+        const int first = (int)found.matches.names.size();
+        for (const BallPoint* point : {&place.a, &place.b})
+        {
+            found.matches.names.push_back({seen_.moments[moment], point == &place.a ? "a" : "b"});
+            for (size_t c = 0; c < point->balls.size(); c++)
+            {
+                const int ball = point->balls[c];
+                found.matches.pixels[c].push_back(point->centers[c]);
+                found.matches.stds[c].push_back(ball >= 0 ? seen_.balls[moment][c][ball].std : NaN);
+            }
+        }
+        found.lengths.list.push_back({first, first + 1, wand_.length, wand_.std, 0});
+    }
+
+    const BallSightings& seen_;
+    const Wand& wand_;
+    std::vector<std::vector<Balls>> clear_;     //!< where a camera sees two balls and no more, if these are enough
+};
+
+//! Throws Failure if the images of one camera fit far better so many moments later.
+void requireInStep(const WandSearch& search, const RigModel& rig, const WandLimits& limits, double miss)
+{
+    const double APART = 3., FAR_BETTER = 0.2;      // px; of the usual miss
+    for (int c = (int)rig.cameras.size() - 1; c > 0 && !(miss < APART); c--)
+        for (int later = -MOST_LATE; later <= MOST_LATE; later++)
+        {
+            const double other = later ? search.usual(rig, limits, c, later).miss : NaN;
+            if (other == other && (std::isnan(miss) || other < FAR_BETTER*miss))
+                throw Failure(format("the images of camera %d are of other moments than those of camera 1, which fit %d image%s %s: rays "
+                                     "miss each other by %.2g px then, and by %s%.2g px as they are given", c + 1, std::abs(later),
+                                     std::abs(later) == 1 ? "" : "s", later > 0 ? "later" : "earlier", other,
+                                     std::isnan(miss) ? "more than " : "", std::isnan(miss) ? limits.rms : miss));
+        }
+}
+
+void requireEnough(const WandMatches& found, const std::string& path)
+{
+    if ((int)found.matches.names.size() < 2*FEWEST)
+        throw Failure(format("only %zu of %d moments show a wand, and %d are needed: in %d no two cameras see two balls, in %d no two "
+                             "fit, in %d several do. Are the images of the rig of '%s', and of one moment each?",
+                             found.matches.names.size()/2, found.moments, FEWEST, found.unseen, found.unfit, found.unclear, path.c_str()));
+}
+
+} // namespace
+
+Wand parseWand(const std::string& text)
+{
+    const double USUAL = 1e-3;
+    const std::vector<double> numbers = parseNumbers(text, "--wand");
+    if (numbers.empty() || numbers.size() > 2 || !(numbers[0] > 0) || !(numbers.back() > 0))
+        throw Failure("--wand=" + text + ": LENGTH or LENGTH,STD is wanted, both more than 0: the distance between the centres of the "
+                      "balls, and how well it is known");
+    const Wand wand = {numbers[0], numbers.size() > 1 ? numbers[1] : USUAL*numbers[0]};
+    if (wand.std >= wand.length/3)
+        throw Failure("--wand=" + text + ": a length of that standard deviation is not known; are the two exchanged?");
+    return wand;
+}
+
+BallSightings findBalls(const Calibration& calibration, std::vector<Frames>& cameras, bool quiet)
+{
+    const std::vector<Moment> moments = sharedMoments(cameras);
+    if ((int)moments.size() < FEWEST)
+        throw Failure(format("--wand: two cameras have images of %zu moments, and %d are needed, some dozens better", moments.size(),
+                             FEWEST));
+    const std::vector<Mat> backgrounds = backgroundsOf(calibration, cameras, moments);
+    BallSightings seen[2];              // bright, dark
+    Progress progress("looking for balls", (int)moments.size(), quiet);
+    for (const Moment& moment : moments)
+    {
+        progress.at(moment.stem);
+        const std::vector<Mat> images = imagesOf(moment, calibration, cameras);
+        for (int dark : {0, 1})
+        {
+            seen[dark].moments.push_back(moment.stem);
+            seen[dark].balls.emplace_back();
+            for (size_t c = 0; c < images.size(); c++)
+                seen[dark].balls.back().push_back(images[c].empty() ? Balls() : ballsIn(images[c], backgrounds[c], !dark));
+        }
+        progress.step();
+    }
+    const BallSightings& result = seen[withWand(seen[1]) > withWand(seen[0])];
+    if (withWand(result) < FEWEST)
+        throw Failure(format("--wand: two cameras see two balls in %d of %zu moments, and %d are needed. What is looked for is round, 4 "
+                             "pixels wide or more, brighter or darker than what is behind it, and moves from image to image",
+                             withWand(result), moments.size(), FEWEST));
+    return result;
+}
+
+WandMatches matchWand(const BundleStart& start, const std::string& path, const BallSightings& seen, const Wand& wand)
+{
+    const double WIDE = 0.05, LEAST[] = {1., 0.3}, TIMES[] = {3., 5.}, LENGTHS[] = {0.3, 0.1};
+    const WandSearch search(seen, wand);
+    RigModel rig = start.rig;
+    WandLimits limits = {WIDE*std::max(rig.cameras[0]->imageSize().width, rig.cameras[0]->imageSize().height), INFINITY};
+    WandMatches found;
+    for (int round : {0, 1})
+    {
+        const WandSearch::Usual usual = search.usual(rig, limits);
+        if (round == 0)
+        {
+            requireInStep(search, rig, limits, usual.miss);
+            if (std::abs(usual.length - 1) > LENGTHS[0])
+                throw Failure(format("with '%s' the balls are %.3g apart (median), and --wand says %g: is that in the unit of T, "
+                                     "thickness and distance there?", path.c_str(), usual.length*wand.length, wand.length));
+        }
+        const double miss = std::isnan(usual.miss) ? limits.rms : usual.miss;
+        limits = {std::min(std::max(LEAST[round], TIMES[round]*miss), limits.rms), LENGTHS[round]};
+        found = search.matches(rig, limits);
+        requireEnough(found, path);
+        if (round == 0)
+            rig = adjustBundle(start, found.matches, found.lengths, true).fit.rig;
+    }
+    return found;
+}
+
+std::string textOf(const WandMatches& found)
+{
+    std::string text = format("wand: %zu of %d moments", found.matches.names.size()/2, found.moments), out;
+    const auto add = [&](int count, const char* why) { out += count ? format("%s%d %s", out.empty() ? "" : ", ", count, why) : ""; };
+    add(found.unseen, "where two cameras do not see two balls");
+    add(found.unfit, "where no two fit");
+    add(found.unclear, "where several do");
+    return text + (out.empty() ? "" : "; left out: " + out) + "\n";
+}
+
+} // namespace tools
