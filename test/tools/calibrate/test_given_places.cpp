@@ -172,6 +172,7 @@ TEST_CASE("Markers that tell no plane are refused with what is wrong", "[given]"
     CHECK(without([](std::vector<PaneMarker>& m) {
         for (PaneMarker& marker : m)
             marker.at = m[0].at + (marker.at[0] - m[0].at[0])*Vec3d(1, 1, 0); }).find("nearly on one line") != std::string::npos);
+    CHECK(without([](std::vector<PaneMarker>& m) { m = {m[0], m[1], m[1]}; }).find("nearly on one line") != std::string::npos);
     CHECK(without([](std::vector<PaneMarker>& m) { m[1].at[2] += 20; }).find("the marker '1' is") != std::string::npos);
     CHECK(without([](std::vector<PaneMarker>& m) {
         for (PaneMarker& marker : m)

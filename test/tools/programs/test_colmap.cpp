@@ -300,6 +300,30 @@ TEST_CASE("Lengths, a base line or the window tell the scale of a model", "[tool
     }
 }
 
+TEST_CASE("Markers on the pane that a survey contradicts are named", "[tools][bundle][colmap]")
+{
+    Network network(740);
+    const TemporaryFolder f;
+    network.write(f);
+    for (const double tilt : {0., 0.3})
+    {
+        const GlassWindow window = network.truth[0]->window();
+        std::string table = "id,x,y,z\n";
+        for (int i = 0; i < 6; i++)
+        {
+            const double x = 60*(i % 3) - 60, y = 80*(i/3) - 40;
+            const double z = (window.distance - window.normal[0]*x - window.normal[1]*y)/window.normal[2] + tilt*x;
+            table += format("%d,%g,%g,%.6f\n", i, x, y, z + network.random.normal(0.1));
+        }
+        writeFile(f / "pane.csv", table);
+        const ToolResult result = survey(f, "--positions=" + f / "positions.csv" + " --pane-points=" + f / "pane.csv"
+                                         + " --pane-points-std=0.1 --distance-std=0");
+        CAPTURE(scenes::seed(), tilt, result.out, result.err);
+        CHECK(result.code == (tilt > 0 ? 2 : 0));
+        CHECK(mentions(result.err, "the matches contradict --pane-points of camera 1's window") == (tilt > 0));
+    }
+}
+
 TEST_CASE("A window that tells no scale is not said to tell one", "[tools][bundle][colmap]")
 {
     for (unsigned salt : {760, 761, 762})

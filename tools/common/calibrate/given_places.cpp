@@ -183,8 +183,9 @@ GivenPlace placeOfMarkers(const std::vector<PaneMarker>& markers, const std::str
         const Vec3d row = rowOf(marker, place, tangents);
         information += row*row.t();
     }
-    bool isPlane = false;
-    const Matx33d ofTurns = information.inv(DECOMP_CHOLESKY, &isPlane);
+    const double SINGULAR = 1e-13;      // least over largest information of turns and distance, in any unit
+    Matx33d ofTurns;
+    const bool isPlane = invert(information, ofTurns, DECOMP_SVD) > SINGULAR;
     place.covariance = tangents*ofTurns*tangents.t();
     const double MOST_DEG = 10.;
     if (!isPlane || !(place.normalStd()*DEGREES < MOST_DEG))

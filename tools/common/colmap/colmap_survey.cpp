@@ -22,6 +22,8 @@ SurveyResult adjustColmap(const SurveyOptions& options, const BundleStart& start
         if (!result.adjustment.hasPose(view))
             result.survey.leaveOut(view);
     result.findings = findingsOf(start, result.start.lengths, result.adjustment.bundle, options.pixelSigma, options.maxRms);
+    checkPlaces(start, [&](const BundleStart& freed) {
+        return adjustSurvey(result.survey, freed, result.start, options.robust, quiet).bundle; }, result.findings);
     result.findings.scale = scaleText(result.start, result.adjustment);
     if (result.start.isScaleOfWindow && result.adjustment.scaleStd > VAGUE)
         result.findings.weak.insert(result.findings.weak.begin(), "the scale, which the window alone tells: give --lengths or --positions");
