@@ -47,6 +47,24 @@ TEST_CASE("A row an observation becomes a row a point", "[foreign]")
     CHECK(table.rows()[2].cells == std::vector<std::string>{"7", "0", "", "", "1", "2", "", ""});
 }
 
+TEST_CASE("Tables are read as spreadsheets of any country write them", "[foreign]")
+{
+    TemporaryFolder f;
+    for (const std::string text : {"image,id,u1,v1\nm1,\"1,5\",640.5,-2e3\n", "image;id;u1;v1\nm1;1,5;640,5;-2e3\n",
+                                   "image\tid\tu1\tv1\r\nm1\t1.5\t640,5\t-2e3\r\n",
+                                   "\xEF\xBB\xBFimage;id;u1;v1\n# mine\n\nm1;1.5;640.5;-2e3\n"})
+    {
+        CAPTURE(text);
+        const CsvTable table = read(f, text);
+        REQUIRE(table.rows().size() == 1);
+        CHECK(table.number(table.rows()[0], "u1") == 640.5);
+        CHECK(table.number(table.rows()[0], "v1") == -2000);
+    }
+    const CsvTable thousands = read(f, "id;u1;v1\na;1.234,5;3\n");
+    CHECK_THROWS_WITH(thousands.number(thousands.rows()[0], "u1"), Catch::Contains("u1 must be a number, not '1.234,5'"));
+    CHECK_THAT(failure(f, std::string("\xFF\xFEi\0d\0,\0u\0", 10)), Catch::Contains("is UTF-16"));
+}
+
 TEST_CASE("Tables of points that cannot be read are refused in a sentence", "[foreign]")
 {
     TemporaryFolder f;

@@ -339,6 +339,7 @@ TEST_CASE("A calibration file with numbers that cannot be is refused", "[tools][
         {truth + "residual_sigma: .nan\n", "residual_sigma"},
         {truth + "degrees_of_freedom: -5\n", "degrees_of_freedom"},
         {"", "is empty"},
+        {"\xFF\xFE" + truth, "is UTF-16"},
         {"\xEF\xBB\xBF" + truth, "byte order mark"}};
     for (const auto& c : cases)
     {

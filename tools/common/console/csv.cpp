@@ -23,6 +23,15 @@ std::string trimmed(const std::string& text)
     return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(blanks) - first + 1);
 }
 
+//! 3,5 is a number where commas do not part cells, as spreadsheets of most of Europe have it.
+std::string withPoint(const std::string& cell)
+{
+    std::string number = cell;
+    double value;
+    std::replace(number.begin(), number.end(), ',', '.');
+    return number != cell && parseNumber(number, value) ? number : cell;
+}
+
 //! A quote in a quoted cell is doubled.
 std::vector<std::string> cellsOf(const std::string& line, char separator)
 {
@@ -38,7 +47,7 @@ std::vector<std::string> cellsOf(const std::string& line, char separator)
         else
             cells.back() += line[i];
     for (std::string& cell : cells)
-        cell = trimmed(cell);
+        cell = separator == ',' ? trimmed(cell) : withPoint(trimmed(cell));
     return cells;
 }
 
@@ -54,7 +63,10 @@ bool isNothing(const std::string& line) { return trimmed(line).empty() || trimme
 
 char separatorOf(const std::string& heading)
 {
-    return heading.find(',') == std::string::npos && heading.find(';') != std::string::npos ? ';' : ',';
+    for (const char separator : {',', ';', '\t'})
+        if (heading.find(separator) != std::string::npos)
+            return separator;
+    return ',';
 }
 
 } // namespace
@@ -82,6 +94,8 @@ CsvTable::CsvTable(const std::string& path, const std::vector<std::string>& requ
     {
         if (number == 1 && line.compare(0, 3, "\xEF\xBB\xBF") == 0)
             line.erase(0, 3);
+        if (number == 1 && (line.compare(0, 2, "\xFF\xFE") == 0 || line.compare(0, 2, "\xFE\xFF") == 0))
+            throw Failure("'" + path + "' is UTF-16, as the shell of Windows writes it: save it as UTF-8");
         if (isNothing(line))
             continue;
         if (!names_.empty())

@@ -11,7 +11,8 @@
 namespace tools {
 
 /** A table from a text file with commas between the cells: a line of column names, then one row a line. Quotes as spreadsheets
-write them; empty lines and those with '#' first are skipped; where the heading has semicolons and no comma, these separate.
+write them; empty lines and those with '#' first are skipped; where the heading has semicolons and no comma, or tabs and none of these,
+they separate, and numbers may have decimal commas.
 Everything throws Failure that names file and line. */
 class CsvTable
 {

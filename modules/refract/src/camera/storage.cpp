@@ -43,6 +43,8 @@ static void requireText(std::ifstream& file, const String& filename)
     if (String(start, 3) == "\xEF\xBB\xBF")
         CV_Error_(Error::StsParseError, ("%s begins with a byte order mark, which OpenCV does not read: save it as UTF-8 "
                                          "without one", filename.c_str()));
+    if (String(start, 2) == "\xFF\xFE" || String(start, 2) == "\xFE\xFF")
+        CV_Error_(Error::StsParseError, ("%s is UTF-16, as the shell of Windows writes it: save it as UTF-8", filename.c_str()));
     file.clear();
     file.seekg(0);
 }
