@@ -167,10 +167,11 @@ void requireInStep(const WandSearch& search, const RigModel& rig, const WandLimi
 
 void requireEnough(const WandMatches& found, const std::string& path)
 {
-    if ((int)found.matches.names.size() < 2*FEWEST)
-        throw Failure(format("only %zu of %d moments show a wand, and %d are needed: in %d no two cameras see two balls, in %d no two "
-                             "fit, in %d several do. Are the images of the rig of '%s', and of one moment each?",
-                             found.matches.names.size()/2, found.moments, FEWEST, found.unseen, found.unfit, found.unclear, path.c_str()));
+    const int fit = (int)found.matches.names.size()/2;
+    if (fit < FEWEST || fit < found.unfit)
+        throw Failure(format("only %d of %d moments show a wand, and %d and most are needed: in %d no two cameras see two balls, in %d no "
+                             "two fit, in %d several do. Are the images of the cameras of '%s', in their order, and of one moment each?",
+                             fit, found.moments, FEWEST, found.unseen, found.unfit, found.unclear, path.c_str()));
 }
 
 } // namespace
