@@ -131,7 +131,7 @@ TEST_CASE("refract_bundle calibrates a rig from images of a wand with two balls"
     for (int trial = 0; trial < trials; trial++)
     {
         const int cameras = trial % 3 == 1 ? 3 : 2;
-        Wand wand(4560 + trial, cameras, 40);
+        Wand wand(4560 + trial, cameras, 30);
         const TemporaryFolder f;
         wand.write(f);
         writePictures(f, wand, scenes[trial % scenes.size()]);
@@ -152,7 +152,7 @@ TEST_CASE("refract_bundle calibrates a rig from images of a wand with two balls"
 TEST_CASE("Of a wand's images what is hidden, mirrored or not clear is left out and counted, and points.csv can be read again",
           "[tools][bundle][wand]")
 {
-    Wand wand(4570, 2, 36);
+    Wand wand(4570, 2, 24);
     const TemporaryFolder f;
     wand.write(f);
     Scene scene;
@@ -162,10 +162,10 @@ TEST_CASE("Of a wand's images what is hidden, mirrored or not clear is left out 
     const ToolResult result = bundleImages(f, 2, "--summary=" + f / "summary.json");
     CAPTURE(scenes::seed(), result.out, result.err);
     REQUIRE(result.code == 0);
-    CHECK(mentions(result.out, " of 36 moments; left out: "));
+    CHECK(mentions(result.out, " of 24 moments; left out: "));
     CHECK(mentions(result.out, "where two cameras do not see two balls"));
     std::vector<Row> rows = rowsOf(f / "points.csv");
-    CHECK(rows.size() > 2*20);
+    CHECK(rows.size() > 2*12);
     Ratio ratio;
     CHECK(pixelError(wand, rows, ratio) < 0.02);
     for (const Row& row : rows)

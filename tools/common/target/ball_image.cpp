@@ -72,7 +72,9 @@ std::vector<Candidate> candidatesIn(const Mat& over)
     Mat smooth;
     GaussianBlur(over, smooth, Size(), 0.7);
     std::vector<Candidate> all, best;
-    for (double level = LOWEST; level < 255; level *= STEP)
+    double highest;
+    minMaxLoc(smooth, nullptr, &highest);
+    for (double level = LOWEST; level < highest; level *= STEP)
         addRound(smooth, level, all);
     std::sort(all.begin(), all.end(), [](const Candidate& a, const Candidate& b) { return a.misplaced() < b.misplaced(); });
     for (const Candidate& c : all)
