@@ -86,6 +86,7 @@ The same input gives the same bytes: outputs carry the time of the newest image 
 #include "report/summary_json.hpp"
 #include "report/thumbnails.hpp"
 #include <cmath>
+#include <set>
 #include <iostream>
 #include <map>
 #include <memory>
@@ -281,6 +282,10 @@ void takeStd(const Options& o, const Target* target, RigOptions& rig)
     rig.std.normal = o.places.normalStd();
     o.window.requireBow(rig.std, rig.flags);
     rig.window = withEstimated(rig.window, rig.std, rig.flags);
+    const std::set<int> windows(rig.windows.begin(), rig.windows.end());
+    if (rig.window.shape == WINDOW_BENT && !rig.window.wedge.empty() && windows.size() < rig.windows.size())
+        throw Failure("a bent window that several cameras share cannot have a wedge, too, as its faces would have no common centre: say "
+                      "--wedge-std=0 (and no --free=wedge), or leave --bow-std out");
 }
 
 void takePlaces(const Options& o, RigOptions& rig)

@@ -33,7 +33,7 @@ struct Scene
     MatrixXd prior;                         // covariance of what differs from the nominal rig
 };
 
-inline GlassWindow seenFrom(const GlassWindow& window, const RigidTransform& camera_from_owner)
+inline GlassWindow flatSeenFrom(const GlassWindow& window, const RigidTransform& camera_from_owner)
 {
     GlassWindow seen = window;
     seen.normal = normalize(camera_from_owner.R*window.normal);
@@ -54,7 +54,7 @@ inline RigModel complete(RigModel rig, bool shared, double outerIndex)
             window.distance = 150.;
         }
         if (shared && c > 0)
-            window = seenFrom(rig.cameras[0]->window(), rig.extrinsics[c]);
+            window = flatSeenFrom(rig.cameras[0]->window(), rig.extrinsics[c]);
         window.wedge.assign(1, Vec2d());
         rig.cameras[c]->setWindow(window);
         if (shared)

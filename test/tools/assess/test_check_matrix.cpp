@@ -41,7 +41,7 @@ void tilt(RigModel& rig, int c, double degrees, double azimuth)
     for (int k = 0; k < (int)rig.cameras.size(); k++)
         if (k != c && rig.sharesWindow(c, k))
         {
-            GlassWindow shared = seenFrom(window, fromTo(rig.extrinsics[c], rig.extrinsics[k]));
+            GlassWindow shared = flatSeenFrom(window, fromTo(rig.extrinsics[c], rig.extrinsics[k]));
             rig.cameras[k]->setWindow(shared);
         }
 }

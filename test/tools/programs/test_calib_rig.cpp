@@ -310,6 +310,7 @@ TEST_CASE("What does not fit a rig is refused in a sentence", "[calib_rig]")
         {first + second + size + " --window-of-camera=1", "there are 2 cameras"},
         {first + second + size + " --window-of-camera=1,1.5", "whole numbers"},
         {first + second + size + " --window-of-camera=1,1 --shared-window", "excludes"},
+        {first + second + size + " --shared-window --bow-std=2", "--wedge-std=0"},
         {" --glass='*.png'", "--size"},
         {first + size + " --poses=" + folder / "poses.csv", "no pose of view 'cal'"},
         {first + size + " --poses=" + folder / "behind.csv --camera=" + folder / "camera1.yml", "no image through the window at the start"},

@@ -36,39 +36,27 @@ void changePane(RigModel& rig, int c, const std::function<void(GlassWindow&)>& c
             changeWindow(rig, k, change);
 }
 
-/* The window's plane n X = d in the frame of its first camera; a camera at C behind it has the distance d - n C. */
+//! About the first camera's centre of projection, along that camera's axes, and nearer to where it looks.
 void moveWindow(RigModel& rig, int owner, double tilt1, double tilt2, double nearer)
 {
-    const Vec3d n0 = rig.cameras[owner]->window().normal, across = normalize(n0.cross(Vec3d(0, 1, 0)));
-    const Vec3d n = normalize(n0 + tilt1*across + tilt2*n0.cross(across));
-    for (int k = 0; k < (int)rig.cameras.size(); k++)
-        if (rig.sharesWindow(owner, k))
-        {
-            const RigidTransform k_from_owner = fromTo(rig.extrinsics[owner], rig.extrinsics[k]);
-            const Vec3d centre = k_from_owner.inverse(Vec3d());
-            changeWindow(rig, k, [&](GlassWindow& window) {
-                window.normal = normalize(k_from_owner.R*n);
-                window.distance = std::max(0., window.distance + nearer - (n - n0).dot(centre));
-            });
-        }
+    changeWindow(rig, owner, [&](GlassWindow& window) {
+        const Vec3d n = window.normal, across = normalize(n.cross(Vec3d(0, 1, 0)));
+        window.normal = normalize(n + tilt1*across + tilt2*n.cross(across));
+        window.distance = std::max(0., window.distance + nearer); });
+    shareWindow(rig, owner);
 }
 
-/* A centre moves as a point of its first camera's frame; of a tube, whose axis turns about it, across the axis. */
+//! A centre moves as a point of its first camera's frame; of a tube, whose axis turns about it, across the axis.
 void moveCentre(RigModel& rig, int owner, const Vec3d& by)
 {
-    for (int k = 0; k < (int)rig.cameras.size(); k++)
-        if (rig.sharesWindow(owner, k))
-            changeWindow(rig, k, [&](GlassWindow& window) {
-                window.center += fromTo(rig.extrinsics[owner], rig.extrinsics[k]).R*by; });
+    changeWindow(rig, owner, [&](GlassWindow& window) { window.center += by; });
+    shareWindow(rig, owner);
 }
 
 void turnAxis(RigModel& rig, int owner, const Vec3d& by)
 {
-    const Vec3d axis = rig.cameras[owner]->window().axis;
-    for (int k = 0; k < (int)rig.cameras.size(); k++)
-        if (rig.sharesWindow(owner, k))
-            changeWindow(rig, k, [&](GlassWindow& window) {
-                window.axis = normalize(fromTo(rig.extrinsics[owner], rig.extrinsics[k]).R*(axis + by)); });
+    changeWindow(rig, owner, [&](GlassWindow& window) { window.axis = normalize(window.axis + by); });
+    shareWindow(rig, owner);
 }
 
 bool hasTwoMedia(const RigModel& rig, int c)

@@ -3,6 +3,8 @@
 
 #include "calibrate/rig_model.hpp"
 #include "calibrate/parameter_columns.hpp"
+#include "calibrate/window_face.hpp"
+#include "window/wedge.hpp"
 #include <opencv2/calib3d.hpp>
 #include <algorithm>
 
@@ -44,6 +46,22 @@ int countWindows(const RigModel& rig)
     for (int c = 0; c < (int)rig.cameras.size(); c++)
         count += rig.ownsWindow(c);
     return count;
+}
+
+GlassWindow seenFrom(const GlassWindow& window, const RigidTransform& there)
+{
+    GlassWindow seen = windowInFrame(window, there.R, there.T);
+    if (!isRound(seen))
+        seen.distance = std::max(0., seen.distance);
+    return seen;
+}
+
+void shareWindow(RigModel& rig, int owner)
+{
+    const GlassWindow window = rig.cameras[owner]->window();
+    for (int c = 0; c < (int)rig.cameras.size(); c++)
+        if (c != owner && rig.sharesWindow(owner, c))
+            rig.cameras[c]->setWindow(seenFrom(window, fromTo(rig.extrinsics[owner], rig.extrinsics[c])));
 }
 
 Ptr<RefractiveCamera> copyWithWindow(const Ptr<RefractiveCamera>& camera, const GlassWindow& window)

@@ -38,6 +38,13 @@ struct RigModel
 
 int countWindows(const RigModel& rig);
 
+/** One window from another camera. For a camera that is taken to be beyond it, it is at the camera: between equal media any distance will
+do, or with a wedge nearly so, and elsewhere a trial goes no farther.
+@param there from the frame of the camera that it is described for, to that of the other */
+cv::refract::GlassWindow seenFrom(const cv::refract::GlassWindow& window, const RigidTransform& there);
+//! All that look through the window of one camera get it as they see it.
+void shareWindow(RigModel& rig, int owner);
+
 //! Same lens, other window.
 cv::Ptr<cv::refract::RefractiveCamera> copyWithWindow(const cv::Ptr<cv::refract::RefractiveCamera>& camera,
                                                       const cv::refract::GlassWindow& window);

@@ -31,43 +31,6 @@ int ownerOf(const RigModel& rig, int camera)
     return owner;
 }
 
-//! Rows e1, e2, n: along e1, e2 a wedge is told (GlassWindow::wedge).
-Matx33d axesOf(const Vec3d& normal)
-{
-    const Vec3d e1 = normalize(Vec3d(1, 0, 0) - normal[0]*normal), e2 = normal.cross(e1);
-    return Matx33d(e1[0], e1[1], e1[2], e2[0], e2[1], e2[2], normal[0], normal[1], normal[2]);
-}
-
-/** One pane, seen from another camera, where its normal through the centre of projection meets it elsewhere. Between equal media any
-distance will do, or with a wedge nearly so: that of a camera that is taken to be beyond it is 0, whatever the others do. */
-GlassWindow seenFrom(GlassWindow window, const RigidTransform& there)
-{
-    if (isRound(window))
-    {
-        window.center = there*window.center;
-        window.axis = there.R*window.axis;
-        return window;
-    }
-    const Matx33d before = axesOf(window.normal), after = axesOf(there.R*window.normal), turn = after*there.R*before.t();
-    window.normal = there.R*window.normal;
-    window.distance += window.normal.dot(there.T);
-    Vec2d sum;
-    double offset = window.normal.dot(there.T);
-    for (size_t i = 0; i < window.wedge.size(); i++)
-    {
-        const Vec3d wedge = turn*Vec3d(window.wedge[i][0], window.wedge[i][1], 0);
-        window.wedge[i] = Vec2d(wedge[0], wedge[1]);
-        sum += window.wedge[i];
-        const double angle = norm(sum), tangent = angle > 0. ? std::tan(angle)/angle : 1.;
-        const double next = (window.normal + tangent*(after.t()*Vec3d(sum[0], sum[1], 0))).dot(there.T);
-        window.thickness[i] += next - offset;
-        offset = next;
-    }
-    if (!hasDifferentMedia(window))
-        window.distance = std::max(0., window.distance);
-    return window;
-}
-
 RigidTransform placeOfCamera(const RigModel& rig, int camera, const VectorXd& numbers)
 {
     const int at = extrinsicsColumn(rig, camera);
