@@ -1,7 +1,7 @@
 // This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
 // SPDX-License-Identifier: Apache-2.0
 
-// What the verdict says of a window's distance that a fit stopped at.
+// What the verdict says of a window's distance that a fit stopped at, and of what the images do not show.
 #include "assess/findings.hpp"
 #include "fitted_rig.hpp"
 #include "programs/run_tool.hpp"
@@ -54,4 +54,25 @@ TEST_CASE("The verdict says at which bound a window's distance ended", "[finding
     CHECK(isSaid("ended where a target touches it", 615, 640));
     CHECK(isSaid("ended at its bound, 0 +- ", 0, 400));
     CHECK_FALSE(isSaid("ended", 200, 650));
+}
+
+TEST_CASE("A camera that one view joins to the others is a weak point", "[findings]")
+{
+    RigCalibration c = calibratedPairs(GivenStd(), 11, 0.1, 39.);
+    const auto says = [&] {
+        const std::vector<std::string> weak = findingsOf(c, Assessment()).weak;
+        return std::any_of(weak.begin(), weak.end(), [](const std::string& of) { return mentions(of, "only 'joint' is of other"); }); };
+    c.baselines.throughGlass = {1., 1.};
+    c.data.views[5].stem = "joint";
+    CHECK_FALSE(says());
+    for (size_t i = 0; i < c.data.views.size(); i++)
+        if (i != 5)
+        {
+            View& view = c.data.views[i];
+            view.direct[i % 2].clear();
+            view.glass[i % 2].clear();
+        }
+    c.fit = fitImages(c.data, c.fit.rig, allViews(c.data), 0);
+    c.residuals = residualsOf(c.data, c.fit);
+    CHECK(says());
 }

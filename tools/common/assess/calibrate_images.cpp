@@ -63,6 +63,8 @@ bool isOfBadFit(CalibrationError::Cause cause)
 void calibrateImages(RigCalibration& c, bool robust, const std::function<void()>& step)
 {
     const CalibrationInput input{c.data, c.options, c.square, c.notices};
+    if (!(c.options.flags & GLASS_USE_POSES))
+        cameraLinks(c.data, false);         // throws where there are none: the first that cannot be, before causes of it are looked for
     // A wrong value makes good points look wrong, and the search for these long: so look first.
     PlainFit plain;
     bool fitsPlainly = true, mayFit = true;

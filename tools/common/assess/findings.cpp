@@ -99,6 +99,20 @@ void checkFit(const RigCalibration& c, int camera, CollectedFindings& f)
                                                 depth[2], c.unit.c_str()));
 }
 
+//! One board joins two cameras wherever they are, so that nothing in it shows whether its images are of one moment.
+void checkLink(const RigCalibration& c, int camera, CollectedFindings& f)
+{
+    const auto isCommon = [&](int i) {
+        const View& view = c.data.views[i];
+        const bool glass = view.hasGlass(camera) && view.countGlass() > 1, direct = view.hasDirect(camera) && view.countDirect() > 1;
+        return glass || direct; };
+    const std::vector<int>& views = c.fit.views;
+    const auto first = std::find_if(views.begin(), views.end(), isCommon);
+    if (c.data.cameraCount > 1 && std::count_if(views.begin(), views.end(), isCommon) == 1)
+        f.add(THE_STATED_ERROR, prefixOf(c, camera) + "of all views only '" + c.data.views[*first].stem + "' is of other cameras, too: if "
+              "these images are not of one moment, nothing shows it; take more with all cameras at once, of equal names");
+}
+
 void checkViews(const RigCalibration& c, int camera, CollectedFindings& f)
 {
     for (bool glass : {true, false})
@@ -256,6 +270,7 @@ Findings findingsOf(const RigCalibration& calibration, const Assessment& assessm
         if (calibration.fit.rig.ownsWindow(c))
             checkWindow(calibration, c, findings);
         checkFit(calibration, c, findings);
+        checkLink(calibration, c, findings);
         checkViews(calibration, c, findings);
     }
     checkCorrelations(calibration, findings);

@@ -46,18 +46,18 @@ bool areDistinct(const std::vector<std::string>& names)
     return std::set<std::string>(names.begin(), names.end()).size() == names.size();
 }
 
-//! Whether two cameras have a name in common.
-bool shareNames(const std::vector<std::vector<std::string>>& cameras)
+//! Names that two cameras have in common.
+size_t countShared(const std::vector<std::vector<std::string>>& cameras)
 {
-    std::set<std::string> known;
+    std::set<std::string> known, shared;
     for (const std::vector<std::string>& names : cameras)
     {
         const std::set<std::string> own(names.begin(), names.end());
         for (const std::string& name : own)
             if (!known.insert(name).second)
-                return true;
+                shared.insert(name);
     }
-    return false;
+    return shared.size();
 }
 
 //! Whether a text has the form of a pattern. @param moment receives what stands at {}
@@ -113,7 +113,7 @@ std::vector<std::string> viewNames(const std::vector<std::string>& paths)
 
 void takeOffCameras(std::vector<std::vector<std::string>>& names)
 {
-    if (names.size() < 2 || shareNames(names))
+    if (names.size() < 2 || countShared(names) > 0)
         return;
     const auto isOne = [](const std::vector<std::string>& camera) {
         return std::set<std::string>(camera.begin(), camera.end()).size() == 1; };
@@ -136,7 +136,7 @@ void takeOffCameras(std::vector<std::vector<std::string>>& names)
         if (still.size() != all.size() || still.count("") > 0)
             return;
     }
-    if (shareNames(left))
+    if (countShared(left) >= (std::any_of(names.begin(), names.end(), isOne) ? 1u : 2u))
         names = left;
 }
 

@@ -15,7 +15,8 @@ std::vector<std::string> viewNames(const std::vector<std::string>& paths);
 
 /** Where no two cameras have a name in common, what is left of each when the camera's own part is taken off: the text that all names of
 the camera begin or end with, but for digits that count moments. left01, right01; 201_02, 202_02; 0001/left, 0001/right. The names
-stay as they are where some are equal already, or none would be. Of one moment are also the images of cameras that have one each.
+stay as they are where some are equal already, or fewer than two would be: of counters that differ, IMG_041 ... IMG_058 and DSC_058 ...
+DSC_075, one number may be the same. Of one moment are also the images of cameras that have one each.
 @param names of the images of each camera, which are changed */
 void takeOffCameras(std::vector<std::vector<std::string>>& names);
 
