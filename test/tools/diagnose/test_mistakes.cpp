@@ -172,6 +172,73 @@ TEST_CASE("A dome given as a pane is named where there are pairs, too", "[mistak
     CHECK(text.substr(0, text.find("; or ")).find("--window=dome") != std::string::npos);
 }
 
+TEST_CASE("One image of some that is turned, or of another name, is named", "[mistakes][slow]")
+{
+    std::cout << "seed " << scenes::seed() << '\n';
+    for (const char* odd : {"turned", "moved"})
+    {
+        scenes::Random random(5950);
+        Scene scene = makeScene(ONE_IN_AIR, random);
+        takeImages(scene, false, random);
+        std::vector<View>& views = scene.calibration.data.views;
+        if (odd == std::string("turned"))
+            turnByHalf(views[3].glass[0], scene.calibration.data.imageSize[0]);
+        else
+            views[3] = look(scene, randomBoard(random), randomBoard(random), true, true, random), views[3].stem = "view03";
+        alignAgain(views[3], 1);
+        const std::string text = saidOf(scene);
+        CAPTURE(odd, text);
+        CHECK((text.empty() || text.find("--glass 'view03' left out") != std::string::npos));      // or it was left out already
+        CHECK(text.find("--unpaired") == std::string::npos);
+    }
+}
+
+TEST_CASE("Images of two cameras in one folder are told by their names", "[mistakes][slow]")
+{
+    std::cout << "seed " << scenes::seed() << '\n';
+    scenes::Random random(5960);
+    Scene scene = makeScene(STEREO_IN_AIR, random);
+    takeImages(scene, false, random);
+    RigData& data = scene.calibration.data;
+    const std::vector<View> views = data.views;
+    data.cameraCount = 1;
+    data.views.clear();
+    for (int c = 0; c < 2; c++)
+        for (const View& of : views)
+        {
+            View view = of;
+            view.stem = format("cam%d_", c + 1) + of.stem;
+            view.direct[0] = of.direct[c];
+            view.glass[0] = of.glass[c];
+            view.direct[1].clear();
+            view.glass[1].clear();
+            data.views.push_back(view);
+        }
+    const std::string text = saidOf(scene);
+    CAPTURE(text);
+    CHECK(text.find("those of 'cam1...' and of 'cam2...' calibrated apart") != std::string::npos);
+    CHECK(text.find("--unpaired") == std::string::npos);
+}
+
+TEST_CASE("Cameras of which no two names are equal are told that, and no other cause", "[mistakes]")
+{
+    scenes::Random random(5970);
+    Scene scene = makeScene(STEREO_IN_AIR, random);
+    takeImages(scene, false, random);
+    std::vector<View>& views = scene.calibration.data.views;
+    for (size_t i = 0, count = views.size(); i < count; i++)
+    {
+        View other = views[i];
+        other.stem = "r" + other.stem;
+        other.direct[0].clear();
+        other.glass[0].clear();
+        views[i].direct[1].clear();
+        views[i].glass[1].clear();
+        views.push_back(other);
+    }
+    CHECK(saidOf(scene).find("both cameras have no view in common") == 0);
+}
+
 TEST_CASE("Every mistake is called by its name: the matrix", "[.monte-carlo][mistakes]")
 {
     std::cout << "seed " << scenes::seed() << '\n';

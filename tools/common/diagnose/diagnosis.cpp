@@ -109,6 +109,8 @@ const Mistake MISTAKES[] = {
 
 //! What gives each image or each camera a place of its own explains any mistake in what they have in common: if nothing else does.
 const Mistake LAST_MISTAKES[] = {
+    {[](const CalibrationInput& input) { return !isRig(input); }, camerasInOneFolder},
+    {[](const CalibrationInput& input) { return hasPairs(input.data); }, oddImages},
     {[](const CalibrationInput& input) { return hasPairs(input.data); }, unpairedImages},
     {isRig, unrelatedViews}};
 
@@ -208,6 +210,12 @@ std::vector<std::string> imageMistakes(const CalibrationInput& input, const MixU
         if (!sentence.empty())
             return {sentence};
     const bool isUnpaired = pairsFromOneMap(input.data) > WINDOWS_PX;
+    for (const auto& explain : {camerasInOneFolder, oddImages})
+    {
+        const Explanation some = isUnpaired ? explain(input) : Explanation{"", NO_FIT};
+        if (some.px < sound)
+            return told(input, {some}, clean);
+    }
     if (isUnpaired && areUnrelated(mixUps))
     {
         const Explanation other = imagesOfOtherMoments(input);

@@ -244,30 +244,77 @@ Disagreements disagreementsOf(const RigData& data, const RigOptions& options, co
     return all;
 }
 
+namespace {
+
+//! The points of a camera's pairs, in both images.
+struct PairedPoints
+{
+    std::vector<Point2d> direct, glass;
+
+    void add(const View& view, int camera)
+    {
+        for (size_t i = 0; i < view.objectPoints.size() && view.isPair(camera); i++)
+            if (seen(view.direct[camera][i]) && seen(view.glass[camera][i]))
+            {
+                direct.push_back(view.direct[camera][i]);
+                glass.push_back(view.glass[camera][i]);
+            }
+    }
+
+    //! Empty: there is none. @param method of findHomography
+    Mat map(int method) const { return direct.size() < 8 ? Mat() : findHomography(direct, glass, method); }
+
+    //! px, the median
+    double distanceFrom(const Mat& map) const
+    {
+        std::vector<Point2d> there;
+        perspectiveTransform(direct, there, map);
+        std::vector<double> lengths;
+        for (size_t i = 0; i < there.size(); i++)
+            lengths.push_back(norm(there[i] - glass[i]));
+        return median(lengths);
+    }
+};
+
+PairedPoints pairedPointsOf(const RigData& data, int camera)
+{
+    PairedPoints points;
+    for (const View& view : data.views)
+        points.add(view, camera);
+    return points;
+}
+
+} // namespace
+
 double pairsFromOneMap(const RigData& data)
 {
     double worst = 0.;
     for (int c = 0; c < data.cameraCount; c++)
     {
-        std::vector<Point2d> direct, glass, there;
-        for (const View& view : data.views)
-            if (view.isPair(c))
-                for (size_t i = 0; i < view.objectPoints.size(); i++)
-                    if (seen(view.direct[c][i]) && seen(view.glass[c][i]))
-                    {
-                        direct.push_back(view.direct[c][i]);
-                        glass.push_back(view.glass[c][i]);
-                    }
-        const Mat H = direct.size() < 8 ? Mat() : findHomography(direct, glass);
-        if (H.empty())
-            continue;
-        perspectiveTransform(direct, there, H);
-        std::vector<double> lengths;
-        for (size_t i = 0; i < there.size(); i++)
-            lengths.push_back(norm(there[i] - glass[i]));
-        worst = std::max(worst, median(lengths));
+        const PairedPoints points = pairedPointsOf(data, c);
+        const Mat H = points.map(0);
+        worst = std::max(worst, H.empty() ? 0. : points.distanceFrom(H));
     }
     return worst;
+}
+
+std::vector<int> pairsOffMap(const RigData& data, int camera)
+{
+    const size_t FEWEST = 3;            // pairs to an odd one
+    const Mat H = pairedPointsOf(data, camera).map(LMEDS);
+    std::vector<int> off;
+    size_t count = 0;
+    for (size_t i = 0; i < data.views.size() && !H.empty(); i++)
+    {
+        PairedPoints points;
+        points.add(data.views[i], camera);
+        if (points.direct.empty())
+            continue;
+        count++;
+        if (points.distanceFrom(H) > WINDOWS_PX)
+            off.push_back((int)i);
+    }
+    return count > FEWEST*off.size() ? off : std::vector<int>();
 }
 
 double camerasApart(const RigData& data, const RigOptions& options)

@@ -6,6 +6,9 @@
 #include "diagnose/image_disagreement.hpp"
 #include "console/table.hpp"
 #include <algorithm>
+#include <cctype>
+#include <map>
+#include <set>
 
 namespace tools {
 
@@ -45,6 +48,46 @@ RigData mirroredData(const RigData& given, Mirror mirror, int only)
                 }
     }
     return data;
+}
+
+//! Runs of digits, of letters, and of what is neither.
+std::vector<std::string> runsOf(const std::string& name)
+{
+    const auto kind = [](unsigned char c) { return std::isdigit(c) ? 0 : std::isalpha(c) ? 1 : 2; };
+    std::vector<std::string> runs;
+    for (size_t i = 0; i < name.size(); i++)
+    {
+        if (i == 0 || kind(name[i]) != kind(name[i - 1]))
+            runs.emplace_back();
+        runs.back() += name[i];
+    }
+    return runs;
+}
+
+/** Views by one run of their names, if those of each are alike but for it: cam1_3, cam2_3, ... The names' beginnings are the keys. Empty:
+they are not of this form. */
+std::map<std::string, std::vector<View>> byCameraInName(const std::vector<View>& views, size_t run)
+{
+    std::map<std::string, std::vector<View>> cameras;
+    std::map<std::string, std::set<std::string>> rests;
+    for (const View& view : views)
+    {
+        std::vector<std::string> runs = runsOf(view.stem);
+        if (runs.size() <= run)
+            return {};
+        std::string key, rest;
+        for (size_t i = 0; i < runs.size(); i++)
+        {
+            key += i <= run ? runs[i] : "";
+            rest += i == run ? "*" : runs[i];
+        }
+        cameras[key].push_back(view);
+        rests[key].insert(rest);
+    }
+    for (const auto& [key, rest] : rests)
+        if (rests.size() < 2 || rests.size() > MAX_CAMERAS || rest.size() < 3 || rest != rests.begin()->second)
+            return {};
+    return cameras;
 }
 
 Explanation better(const Explanation& a, const Explanation& b) { return b.px < a.px ? b : a; }
@@ -141,6 +184,43 @@ Explanation imagesOfOtherMoments(const CalibrationInput& input)
                                  medianErrorOfFit(data, input.options)});
         }
     return best;
+}
+
+Explanation camerasInOneFolder(const CalibrationInput& input)
+{
+    const size_t MOST_RUNS = 6;
+    for (size_t run = 0; run < MOST_RUNS && input.data.cameraCount == 1; run++)
+    {
+        std::string sentence;
+        double worst = 0.;
+        for (const auto& [key, views] : byCameraInName(input.data.views, run))
+        {
+            RigData data = input.data;
+            data.views = views;
+            worst = std::max(worst, medianErrorOfFit(data, input.options));
+            sentence += (sentence.empty() ? "those of '" : " and of '") + key + "...'";
+        }
+        if (!sentence.empty() && worst < NO_FIT)
+            return {sentence + " calibrated apart, so they are of several cameras, or something changed between them: give each "
+                    "camera its own (--glass='...', --glass2='...')", worst};
+    }
+    return {"", NO_FIT};
+}
+
+Explanation oddImages(const CalibrationInput& input)
+{
+    RigData data = input.data;
+    std::string names;
+    for (int c = 0; c < data.cameraCount; c++)
+        for (int i : pairsOffMap(input.data, c))
+        {
+            data.views[i].glass[c].clear();
+            names += (names.empty() ? "" : ", ") + std::string("--glass") + cameraSuffix(c) + " '" + data.views[i].stem + "'";
+        }
+    if (names.empty())
+        return {"", NO_FIT};
+    return {names + " left out, in which the board is elsewhere than in the --direct image of that name: it was moved, or one of the two "
+            "is turned, mirrored or of another name", medianErrorOfFit(data, input.options)};
 }
 
 Explanation unpairedImages(const CalibrationInput& input)

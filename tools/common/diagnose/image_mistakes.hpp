@@ -23,6 +23,12 @@ Explanation unrelatedViews(const CalibrationInput& input);
 //! Equal names of the images of one option and of all others are not of the same moment.
 Explanation imagesOfOtherMoments(const CalibrationInput& input);
 
+//! Images of several cameras are given for those of one, which their names show: cam1_3, cam2_3.
+Explanation camerasInOneFolder(const CalibrationInput& input);
+
+//! Few pairs are off what most of them show: their images through the window are left out.
+Explanation oddImages(const CalibrationInput& input);
+
 //! Equal names of a direct and a glass image are not of one pose of the board.
 Explanation unpairedImages(const CalibrationInput& input);
 
