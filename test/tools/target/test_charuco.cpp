@@ -48,11 +48,12 @@ cv::Mat picture(const std::string& size, bool legacy)
     return drawn;
 }
 
-std::string failure(const std::string& size, bool drawn, bool said)
+//! @param otherSize that is said; empty: that of the board
+std::string failure(const std::string& size, bool drawn, bool said, const std::string& otherSize = "")
 {
     try
     {
-        Target(board(size, said)).detect(picture(size, drawn));
+        Target(board(otherSize.empty() ? size : otherSize, said)).detect(picture(size, drawn));
         return "found";
     }
     catch (const Failure& e)
@@ -88,4 +89,15 @@ TEST_CASE("The other layout of a ChArUco board is told, and what to say of it", 
     CHECK_THAT(failure("8x5", false, true), Catch::Contains("since 4.6: leave --legacy out"));
     CHECK(failure("8x6", false, true) == "found");             // no difference
     CHECK(failure("8x6", true, false) == "found");
+}
+
+TEST_CASE("A ChArUco board of another size than --size is told by where its markers are", "[charuco]")
+{
+    for (bool legacy : {false, true})
+    {
+        CHECK_THAT(failure("8x5", legacy, legacy, "5x8"), Catch::Contains("give --size=8x5, columns before rows"));
+        CHECK_THAT(failure("9x6", legacy, legacy, "6x9"), Catch::Contains("give --size=9x6, columns before rows"));
+        CHECK_THAT(failure("8x6", legacy, legacy, "7x6"), Catch::Contains("in 9 columns of squares, not in the 8 of --size=7x6"));
+        CHECK(failure("8x6", legacy, legacy) == "found");
+    }
 }

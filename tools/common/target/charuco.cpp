@@ -83,13 +83,37 @@ double misfit(const MarkerCorners& corners, const std::vector<int>& ids, cv::Siz
     return cv::norm(seen, board, cv::NORM_L2)/std::sqrt((double)board.size());
 }
 
+const double WRONG = 0.15, RIGHT = 0.05;        // misfits: what a lens bends is far less than a square
+
+//! How many columns of squares the markers have, by where they are; 0: that is not told.
+int columnsOf(const MarkerCorners& corners, const std::vector<int>& ids)
+{
+    const int MOST = 60;
+    for (int columns = 2; columns <= MOST; columns++)
+        for (bool legacy : {false, true})
+        {
+            const double off = misfit(corners, ids, cv::Size(columns, MOST), legacy);
+            if (off > 0. && off < RIGHT)
+                return columns;
+        }
+    return 0;
+}
+
 void requireLayout(const MarkerCorners& corners, const std::vector<int>& ids, cv::Size squares, bool legacy)
 {
-    const double WRONG = 0.15, RIGHT = 0.05;            // what a lens bends is far less than a square
-    if (squares.height % 2 == 0 && misfit(corners, ids, squares, legacy) > WRONG && misfit(corners, ids, squares, !legacy) < RIGHT)
+    if (!(misfit(corners, ids, squares, legacy) > WRONG))
+        return;
+    if (squares.height % 2 == 0 && misfit(corners, ids, squares, !legacy) < RIGHT)
         throw Failure(legacy ? "the markers of this ChArUco board are where OpenCV puts them since 4.6: leave --legacy out"
                              : "the markers of this ChArUco board are where OpenCV put them before 4.6 (a marker in the first corner, of a "
                                "board with an even number of rows): say --legacy");
+    const int columns = columnsOf(corners, ids);
+    if (columns == squares.height)
+        throw Failure(cv::format("the markers of this ChArUco board are in %d columns of squares: give --size=%dx%d, columns before rows",
+                                 columns, squares.height - 1, squares.width - 1));
+    if (columns > 0 && columns != squares.width)
+        throw Failure(cv::format("the markers of this ChArUco board are in %d columns of squares, not in the %d of --size=%dx%d: give %d "
+                                 "columns of inner corners", columns, squares.width, squares.width - 1, squares.height - 1, columns - 1));
 }
 
 #if !REFRACT_OPENCV_AT_LEAST_4_7
