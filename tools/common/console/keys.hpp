@@ -35,8 +35,10 @@ private:
 };
 
 /** Of files that may have other programs' keys, too: throws Failure for a key that is nearly a known one (two letters less, more or other),
-and no other's, so that a typing error does not become a default. */
-void requireNoMisspelling(const cv::FileNode& node, const std::vector<std::string>& known, const std::string& filename);
+and no other's, so that a typing error does not become a default.
+@param shortest letters: of a shorter name few make another */
+void requireNoMisspelling(const cv::FileNode& node, const std::vector<std::string>& known, const std::string& filename,
+                          size_t shortest = 9);
 
 } // namespace tools
 

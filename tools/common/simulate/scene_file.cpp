@@ -25,6 +25,7 @@ namespace {
 Exposure readExposure(const FileNode& node)
 {
     const Keys keys(node, "exposure");
+    keys.allowOnly({"dark", "light", "background", "blur", "noise", "vignetting"});
     Exposure e;
     e.dark = keys.number("dark", 0, 255, e.dark);
     e.light = keys.number("light", 0, 255, e.light);
@@ -130,6 +131,7 @@ using PosesByName = std::map<std::string, std::vector<NamedPose>>;
 
 BoardPose readPose(const Keys& keys)
 {
+    keys.allowOnly({"rvec", "tvec"});
     const auto r = keys.numbers("rvec", 3), t = keys.numbers("tvec", 3);
     return {Vec3d(r.data()), Vec3d(t.data())};
 }
@@ -148,6 +150,7 @@ std::vector<NamedPose> readPoses(const FileNode& node, const Target& target, con
         return poses;
     }
     const Keys keys(node, "poses: " + name);
+    keys.allowOnly({"count", "distance", "tilt_deg", "roll_deg", "margin", "seen_by"});
     const int count = (int)keys.number("count", 1, 10000);
     PoseLottery lottery(keys, target, rig, seed);
     const int digits = (int)std::to_string(count).size();
@@ -170,6 +173,7 @@ PosesByName readTarget(const FileStorage& fs, Scene& scene, const std::string& f
         return poses;
     }
     const Keys target(fs["target"], "target");
+    target.allowOnly({"pattern", "size", "square", "marker", "tag_spacing", "dictionary"});
     scene.target.pattern = target.text("pattern", "chessboard");
     scene.target.size = target.text("size", "");
     scene.target.square = target.number("square", 1e-9, 1e9);
@@ -208,6 +212,7 @@ ImageSet readSet(const FileNode& node, const Scene& scene, const PosesByName& po
     ImageSet set;
     set.name = node.name();
     const Keys keys(node, "sets: " + set.name);
+    keys.allowOnly({"window", "scene", "motion", "poses", "emitters"});
     set.window = keys.number("window", 0, 1, 1) != 0;
     set.scene = keys.number("scene", 0, 1, 0) != 0;
     if (keys.has("motion"))
@@ -257,6 +262,7 @@ Scene readScene(const std::string& filename)
         if (c.camera->imageSize().empty())
             throw Failure("'" + filename + "': image_width and image_height of each camera are needed");
     const FileStorage fs(filename, FileStorage::READ);
+    requireNoMisspelling(fs.root(), {"target", "exposure", "channels", "emitters", "texture"}, filename, 6);
     if (fs["target"].empty() && fs["scene"].empty())
         throw Failure("'" + filename + "' has no 'target' and no 'scene', so there is nothing to render (see refract_simulate "
                       "--help)");
