@@ -198,4 +198,8 @@ TEST_CASE("Images of one camera that are given to another are refused", "[rig_da
         CHECK_THROWS_WITH(readRigImages(sources, nullptr, sizes, true), Catch::Contains("'a' of camera 2")
                           && Catch::Contains("the very pixels of 'a' of camera 1") && Catch::Contains(second));
     }
+    sources.glass[1].clear();
+    sources.direct[0] = folder / "two.csv";
+    CHECK_THROWS_WITH(readRigImages(sources, nullptr, sizes, true), Catch::Contains("'a' of --glass")
+                      && Catch::Contains("the very pixels of 'a' of --direct") && Catch::Contains("give each option its own images"));
 }

@@ -603,6 +603,7 @@ TEST_CASE("refract_calib refuses with one sentence and writes nothing", "[calib_
         {inputs(f, PANE + lens(f) + " --distance-std=1"), "--distance-std: with the same medium"},
         {inputs(f, PANE + lens(f) + " --outer-index=1.333 --distance-std=1"), "add --distance"},
         {inputs(f, lens(f) + " --outer-index=1.333 --wedge-std=1"), "give --thickness and --index"},
+        {inputs(f, PANE + lens(f) + " --free=distance"), "or say what the target was in"},
         {inputs(f, PANE + lens(f) + " --note=a=b --note=a=c"), "another note 'a'"},
         {"refract_calib --size=6x5 --square=39 --glass=" + f / "none-*.png" + " --out=" + f / "calib.yml" + PANE, "none-"},
         {"refract_calib --size=6x5 --square=39 --glass=" + f / "cut.png" + " --out=" + f / "calib.yml" + PANE, "cut.png"},

@@ -103,8 +103,9 @@ void noticeDuplicates(const RigImages& sets, std::vector<std::string>& notices)
         text += (i ? ", " : "") + repeated[i].first + " and " + repeated[i].second;
     if (repeated.size() > FEW)
         text += format(", and %zu more", repeated.size() - FEW);
-    notices.push_back(text + " are one image (the same corners to 0.0001 px): " + (repeated.size() == 1 ? "it counts" : "each counts")
-                      + " twice, so that the +- are too small. Leave one out");
+    notices.push_back((repeated.size() == 1 ? std::string("one image is") : format("%zu images are", repeated.size()))
+                      + " given more than once (the same corners to 0.0001 px), so that the +- are too small; leave out what stands twice: "
+                      + text);
 }
 
 //! Unit normal of the board in the frame of the camera, roughly: for a usual lens, without its distortion. 0: it has none.

@@ -240,7 +240,7 @@ void requireFreeOfShape(const GlassWindow& window, int flags)
         throw Failure("--free=thickness and --free=index need a layer to start from: give --thickness and --index roughly");
     if (isEqual && flags & GLASS_FREE_DISTANCE)
         throw Failure("--free=distance: with the same medium on both sides of the window the distance has exactly no effect "
-                      "on the image and cannot be found; leave it out");
+                      "on the image and cannot be found; leave it out, or say what the target was in (--outer-index=water)");
 }
 
 GlassWindow withEstimated(GlassWindow window, const GivenStd& std, int flags)

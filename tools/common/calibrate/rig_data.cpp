@@ -135,13 +135,14 @@ std::vector<int> allViews(const RigData& data)
 
 namespace {
 
-//! No two cameras see a target in the same pixels to the last digit.
+//! No two cameras see a target in the same pixels to the last digit, nor does one without and with its window.
 void requireOwnImages(const RigImages& sets)
 {
-    std::map<std::vector<std::pair<double, double>>, std::pair<int, const DetectedImage*>> known;
+    struct Known { int camera; bool glass; const DetectedImage* image; };
+    std::map<std::vector<std::pair<double, double>>, Known> known;
     for (int c = 0; c < MAX_CAMERAS; c++)
-        for (const DetectedImages* set : {&sets.direct[c], &sets.glass[c]})
-            for (const DetectedImage& image : set->images)
+        for (bool glass : {false, true})
+            for (const DetectedImage& image : (glass ? sets.glass : sets.direct)[c].images)
             {
                 std::vector<std::pair<double, double>> pixels;
                 for (const Point2d& p : image.points)
@@ -149,11 +150,16 @@ void requireOwnImages(const RigImages& sets)
                         pixels.emplace_back(p.x, p.y);
                 if ((int)pixels.size() < MIN_POSE_POINTS)
                     continue;
-                const auto& [camera, first] = known.insert({pixels, {c, &image}}).first->second;
-                if (camera != c)
-                    throw Failure(cv::format("'%s' of camera %d ('%s') shows the target in the very pixels of '%s' of camera %d ('%s'): "
-                                             "give each camera its own images", image.stem.c_str(), c + 1, image.path.c_str(),
-                                             first->stem.c_str(), camera + 1, first->path.c_str()));
+                const Known& first = known.insert({pixels, {c, glass, &image}}).first->second;
+                if (first.camera == c && first.glass == glass)
+                    continue;
+                const auto of = [&](int camera, bool isGlass) {
+                    return first.camera != c ? cv::format("camera %d", camera + 1)
+                                             : (isGlass ? "--glass" : "--direct") + cameraSuffix(camera); };
+                throw Failure(cv::format("'%s' of %s ('%s') shows the target in the very pixels of '%s' of %s ('%s'): give each %s its own "
+                                         "images", image.stem.c_str(), of(c, glass).c_str(), image.path.c_str(),
+                                         first.image->stem.c_str(), of(first.camera, first.glass).c_str(), first.image->path.c_str(),
+                                         first.camera != c ? "camera" : "option"));
             }
 }
 
