@@ -3,6 +3,9 @@
 
 // The uncertainty budget: its rows against what each source does by itself.
 #include "assess/budget.hpp"
+#include "calibrate/parameter_columns.hpp"
+#include "math/dense.hpp"
+#include "measure/eigen_matrix.hpp"
 #include "fitted_rig.hpp"
 
 using namespace cv;
@@ -58,4 +61,28 @@ TEST_CASE("The budget of a point adds up, and each source is worth what it does 
           == Approx(rowOf(ofExact, "noise of the point's own pixels").effect).epsilon(0.1));
     CHECK(rowOf(rows, "thickness, camera 1").effect > 0.);
     CHECK(ofExact.size() == 3);
+}
+
+TEST_CASE("Where a covariance was widened its sources are no more than all of it", "[budget]")
+{
+    GivenStd std;
+    std.thickness = 0.1;
+    std.index = {0.001};
+    std.scale = 5e-4;
+    RigCalibration c = calibrated(std);
+    const auto left = [&] {         // the least part of a direction's variance that is noise
+        MatrixXd rest = toEigen(c.fit.covariance);
+        for (const UncertaintySource& source : uncertaintySources(c))
+            rest -= product(toEigen(source.factor), toEigen(source.factor).transpose());
+        const CorrelationSpectrum spectrum(toEigen(c.fit.covariance));
+        const MatrixXd inverseRoot = spectrum.inverseRoot(spectrum.rank(1e-9));
+        return SymmetricEigen(product(product(inverseRoot.transpose(), rest), inverseRoot)).values.minCoeff(); };
+    CHECK(left() > -1e-6);
+    // As a profile widens it: along a direction that a distance or a tilt has.
+    const int at = columnsOf(c.fit.rig, 0).thickness;
+    const Mat wide = 1.5*c.fit.withTargets.col(at)*c.fit.withTargets.row(at)/c.fit.withTargets.at<double>(at, at);
+    c.fit.withTargets += wide;
+    c.fit.covariance += wide(Rect(0, 0, c.fit.covariance.cols, c.fit.covariance.rows));
+    CHECK(left() > -1e-6);
+    CHECK(uncertaintyBudget(c).back().source == "total");
 }

@@ -129,6 +129,32 @@ Mat rootOfInformation(const Mat& prior)
     return toMat(spectrum.inverseRoot(spectrum.rank(NOTHING)));
 }
 
+/* What was known before has the part C W C of the covariance C, which is no more than C where that is the inverse of all information.
+Where a profile was wider than the least squares say, C was widened, and the parts are more than all: then along those directions they
+are all. Empty: they are not; else the matrix that the parts' roots are to be multiplied by. */
+MatrixXd noMoreThanAll(const Mat& covariance, const std::vector<Source>& sources)
+{
+    const double NOTHING = 1e-13, ROUNDING = 1e-9;
+    const CorrelationSpectrum spectrum(toEigen(covariance));
+    const int rank = spectrum.rank(NOTHING);
+    if (rank == 0)
+        return {};
+    const MatrixXd root = spectrum.root(rank), inverseRoot = spectrum.inverseRoot(rank);
+    MatrixXd parts = MatrixXd::Zero(rank, rank);        // of the unit matrix
+    for (const Source& source : sources)
+    {
+        const Mat factor = partOf(covariance, rangeOf(0, covariance.rows), source.columns)*rootOfInformation(source.prior);
+        const MatrixXd part = transposeTimes(inverseRoot, toEigen(factor));
+        parts += product(part, part.transpose());
+    }
+    const SymmetricEigen eigen(parts);
+    if (!(eigen.values.maxCoeff() > 1. + ROUNDING))
+        return {};
+    const VectorXd scales = eigen.values.array().max(1.).rsqrt();
+    const MatrixXd scaled = product(MatrixXd(eigen.vectors*scales.asDiagonal()), eigen.vectors.transpose());
+    return product(product(root, scaled), inverseRoot.transpose());
+}
+
 //! Mean squares of the errors of points in the working volume, and of their part that is pixel noise.
 class Volume
 {
@@ -162,9 +188,15 @@ std::vector<UncertaintySource> uncertaintySources(const RigCalibration& c)
     std::vector<UncertaintySource> sources;
     if (c.fit.withTargets.empty())
         return sources;
-    for (const Source& source : sourcesOf(c))
-        sources.push_back({source.name, source.given, commonStd(source),
-                           partOf(c.fit.withTargets, cameras, source.columns)*rootOfInformation(source.prior)});
+    const std::vector<Source> all = sourcesOf(c);
+    const MatrixXd atMost = noMoreThanAll(c.fit.withTargets, all);
+    for (const Source& source : all)
+    {
+        Mat factor = partOf(c.fit.withTargets, rangeOf(0, c.fit.withTargets.rows), source.columns)*rootOfInformation(source.prior);
+        if (atMost.size() > 0)
+            factor = toMat(product(atMost, toEigen(factor)));
+        sources.push_back({source.name, source.given, commonStd(source), factor.rowRange(0, (int)cameras.size()).clone()});
+    }
     return sources;
 }
 
