@@ -190,11 +190,26 @@ std::vector<std::string> told(const CalibrationInput& input, const std::vector<E
 }
 
 //! Of what makes the images agree, what fits. @param most that are tried
-std::vector<std::string> confirmed(const CalibrationInput& input, const std::vector<MixUp>& mixUps, size_t most, double clean)
+std::vector<Explanation> fitted(const CalibrationInput& input, const std::vector<MixUp>& mixUps, size_t most)
 {
     std::vector<Explanation> tried;
     for (size_t i = 0; i < std::min(most, mixUps.size()); i++)
         tried.push_back({mixUps[i].sentence, medianErrorOfFit(mixUps[i].undone, input.options)});
+    return tried;
+}
+
+std::vector<std::string> confirmed(const CalibrationInput& input, const std::vector<MixUp>& mixUps, size_t most, double clean)
+{
+    return told(input, bestBelow(largestSoundError(input.data), fitted(input, mixUps, most)), clean);
+}
+
+//! Those that are clear, and, where none leaves only noise, others that pinholes hardly tell from them.
+std::vector<std::string> confirmedClear(const CalibrationInput& input, const MixUps& mixUps, double clean)
+{
+    std::vector<Explanation> tried = fitted(input, mixUps.clear, mixUps.clear.size());
+    if (!tried.empty() && !isFound(tried, clean))
+        for (const Explanation& e : fitted(input, mixUps.possible, MOST_POSSIBLE))
+            tried.push_back(e);
     return told(input, bestBelow(largestSoundError(input.data), tried), clean);
 }
 
@@ -203,7 +218,7 @@ places of their own come last, as they explain any other. */
 std::vector<std::string> imageMistakes(const CalibrationInput& input, const MixUps& mixUps)
 {
     const double sound = largestSoundError(input.data), clean = cleanError(input);
-    std::vector<std::string> sentences = confirmed(input, mixUps.clear, mixUps.clear.size(), clean);
+    std::vector<std::string> sentences = confirmedClear(input, mixUps, clean);
     if (!sentences.empty())
         return sentences;
     for (const std::string& sentence : {partOfBoard(input), badCorners(input)})
