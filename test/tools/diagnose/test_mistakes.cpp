@@ -162,6 +162,36 @@ TEST_CASE("What pinholes hardly tell apart is fitted before one is named", "[mis
     CHECK(isNamed(ALL_TURNED, text.substr(0, text.find("; or "))));
 }
 
+TEST_CASE("What the bow of a bent pane leaves in a trial is no other cause", "[mistakes][slow]")
+{
+    std::cout << "seed " << scenes::seed() << '\n';
+    scenes::Random random(5980);
+    Scene scene = makeScene(STEREO_IN_WATER, random);
+    for (RigModel* rig : {&scene.truth, &scene.throughWindow})
+        for (const Ptr<RefractiveCamera>& camera : rig->cameras)
+        {
+            GlassWindow window = camera->window();
+            window.wedge.clear();
+            window.shape = WINDOW_BENT;
+            window.curvature = -8e-4;
+            camera->setWindow(window);
+        }
+    RigOptions& options = scene.calibration.options;
+    options.window.wedge.clear();
+    options.window.shape = WINDOW_BENT;
+    options.std.wedge = 0.;
+    options.std.curvature = 8e-4;
+    takeImages(scene, false, random);
+    options.window.outerIndex = 1.;             // the water forgotten
+    options.window.distance = 0.;
+    options.std.outerIndex = 0.;
+    options.flags = 0;
+    const std::string text = saidOf(scene);
+    CAPTURE(text);
+    CHECK(text.find("--outer-index=1.333") != std::string::npos);
+    CHECK(text.find("something else is wrong") == std::string::npos);
+}
+
 TEST_CASE("A dome given as a pane is named where there are pairs, too", "[mistakes][slow]")
 {
     std::cout << "seed " << scenes::seed() << '\n';
