@@ -137,14 +137,15 @@ TEST_CASE("refract_calib finds a fisheye lens and its window, and how well", "[t
 TEST_CASE("A fisheye lens needs flat targets to start from", "[tools][calib][fisheye]")
 {
     const TemporaryFolder folder;
-    std::ofstream out(folder / "direct.csv");
-    out << "view,x,y,z,u,v\n";
-    for (int view = 0; view < 3; view++)
-        for (int i = 0; i < 27; i++)
-            out << view << "," << 10*(i % 3) << "," << 10*(i/3 % 3) << "," << 10*(i/9) << "," << 500 + 40*(i % 3) + 7*(i/9) + view << ","
-                << 400 + 40*(i/3 % 3) + 3*(i/9) << "\n";
-    out.close();
-    std::filesystem::copy_file(folder / "direct.csv", folder / "glass.csv");
+    for (const std::string name : {"direct", "glass"})
+    {
+        std::ofstream out(folder / (name + ".csv"));
+        out << "view,x,y,z,u,v\n";
+        for (int view = 0; view < 3; view++)
+            for (int i = 0; i < 27; i++)
+                out << view << "," << 10*(i % 3) << "," << 10*(i/3 % 3) << "," << 10*(i/9) << "," << 500 + 40*(i % 3) + 7*(i/9) + view
+                    << "," << 400 + 40*(i/3 % 3) + 3*(i/9) + (name == "glass") << "\n";
+    }
     const ToolResult result = runTool("refract_calib --lens=fisheye --image-size=1280x1024 --thickness=15 --index=1.52 --direct="
                                       + (folder / "direct.csv") + " --glass=" + (folder / "glass.csv") + " --out=" + (folder / "c.yml"));
     CHECK(result.code == 1);
