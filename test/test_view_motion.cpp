@@ -4,6 +4,7 @@
 // How the views of a scene move by steps that are not small.
 #include "adjust/view_motion.hpp"
 #include "bundle_scenes.hpp"
+#include "math/robust_scale.hpp"
 #include "problem_scenes.hpp"
 
 using namespace cv;
@@ -12,18 +13,23 @@ using namespace scenes;
 
 namespace {
 
-//! Views in a row, each by itself in no position that is special, with points before them.
-std::unique_ptr<Problem> makeRow(Random& random, double turned)
+const int VIEWS = 25;
+
+//! Views in a row with points before them, each second one rolled by so much.
+std::unique_ptr<Problem> makeRow(Random& random, double turned, double roll)
 {
     const RigTruth truth = makeRig(1, { 0 }, 1.333);
     BundleScene scene;
     for (int i = 0; i < 120; i++)
         scene.points.push_back({ 10.*i + random.uniform(0, 9), random.uniform(-60, 60), random.uniform(-30, 30) });
-    for (int view = 0; view < 25; view++)
+    for (int view = 0; view < VIEWS; view++)
     {
-        const Vec3d rvec = random.vector(turned);
-        Matx33d R;
-        Rodrigues(rvec, R);
+        Matx33d R, rolled;
+        Rodrigues(random.vector(turned), R);
+        Rodrigues(Vec3d(0, 0, view % 2 ? roll : 0), rolled);
+        R = rolled*R;
+        Vec3d rvec;
+        Rodrigues(R, rvec);
         scene.rvecs.push_back(rvec);
         scene.tvecs.push_back(-(R*(Vec3d(45.*view, 0, -600) + random.vector(10))));
     }
@@ -31,17 +37,19 @@ std::unique_ptr<Problem> makeRow(Random& random, double turned)
     return bundleAt(truth, scene, 0.1, 0);
 }
 
-Vector6 stepOf(const Vec3d& turn, const Vec3d& shift)
+Vector6 joined(const Vec3d& rvec, const Vec3d& tvec)
 {
-    Vector6 step;
-    step << turn[0], turn[1], turn[2], shift[0], shift[1], shift[2];
-    return step;
+    Vector6 pose;
+    pose << rvec[0], rvec[1], rvec[2], tvec[0], tvec[1], tvec[2];
+    return pose;
 }
 
-Vector6 poseOfView(const Problem& problem, int view)
+std::vector<Vector6> posesOf(const Problem& problem)
 {
-    const Pose pose = problem.pose(view);
-    return stepOf(pose.rvec, pose.tvec);
+    std::vector<Vector6> poses;
+    for (int view = 0; view < problem.viewCount(); view++)
+        poses.push_back(joined(problem.pose(view).rvec, problem.pose(view).tvec));
+    return poses;
 }
 
 Vec3d seenBy(const Vector6& pose, const Vec3d& point)
@@ -51,33 +59,54 @@ Vec3d seenBy(const Vector6& pose, const Vec3d& point)
     return R*point + Vec3d(pose.data() + 3);
 }
 
+//! Of a view that turns with its scene by omega about a point.
+Vector6 turnedTogether(const Vector6& pose, const Vec3d& omega, const Vec3d& about)
+{
+    Matx33d R, Q;
+    Rodrigues(Vec3d(pose.data()), R);
+    Rodrigues(omega, Q);
+    const Vec3d centre = about + Q*(-(R.t()*Vec3d(pose.data() + 3)) - about);
+    R = R*Q.t();
+    Vec3d rvec;
+    Rodrigues(R, rvec);
+    return joined(rvec, -(R*centre));
+}
+
+Vec3d middleOf(const Problem& problem, int view)
+{
+    std::vector<double> seen[3];
+    for (const Image& image : problem.images())
+        for (const Point3d& point : image.points.object)
+            for (int k = 0; k < 3 && image.view == view; k++)
+                seen[k].push_back(Vec3d(point)[k]);
+    return Vec3d(median(seen[0]), median(seen[1]), median(seen[2]));
+}
+
 } // namespace
 
 TEST_CASE("A step of views is to first order that of rvec and t, and is found again", "[view-motion]")
 {
     Random random(91);
     CAPTURE(seed());
-    const std::unique_ptr<Problem> problem = makeRow(random, 0.1);
+    const std::unique_ptr<Problem> problem = makeRow(random, 0.1, 3);
     const std::vector<ViewEdge> tree = treeOfViews(*problem);
-    CHECK((int)tree.size() == problem->viewCount() - 1);
+    CHECK((int)tree.size() == VIEWS - 1);
+    for (const ViewEdge& edge : tree)
+        CHECK(std::abs(edge.from - edge.to) < 4);       // those that share most
     ViewMotion motion(*problem, tree);
+    const std::vector<Vector6> from = posesOf(*problem);
     for (double size : { 1e-6, 0.2 })
     {
-        std::vector<Vec3d> turns;
         std::vector<Vector6> steps;
-        for (int view = 0; view < problem->viewCount(); view++)
-        {
-            turns.push_back(size*random.vector(1));
-            steps.push_back(stepOf(turns.back(), size*random.vector(100)));
-        }
-        motion.turn(turns);
-        for (int view = 0; view < problem->viewCount(); view++)
+        for (int view = 0; view < VIEWS; view++)
+            steps.push_back(joined(size*random.vector(1), size*random.vector(100)));
+        const std::vector<Vector6> poses = motion.posesAfter(steps), again = motion.stepsTo(poses);
+        for (int view = 0; view < VIEWS; view++)
         {
             CAPTURE(size, view);
-            const Vector6 pose = motion.poseAfter(view, steps[view]);
             if (size < 1e-3)
-                CHECK((pose - poseOfView(*problem, view) - steps[view]).norm() < 1e-3*steps[view].norm());
-            CHECK((motion.stepTo(view, pose) - steps[view]).norm() < 1e-9);
+                CHECK((poses[view] - from[view] - steps[view]).norm() < 1e-3*steps[view].norm());
+            CHECK((again[view] - steps[view]).norm() < 1e-8);
         }
     }
 }
@@ -86,23 +115,58 @@ TEST_CASE("Views and points that turn together keep their places to each other",
 {
     Random random(92);
     CAPTURE(seed());
-    const std::unique_ptr<Problem> problem = makeRow(random, 0);        // equal rvecs: so are their turns
-    ViewMotion motion(*problem, treeOfViews(*problem));
     const Vec3d omega(0.05, -0.3, 0.2), about(3000, -200, 100);         // rad, in the scene
-    motion.turn(std::vector<Vec3d>(problem->viewCount(), -omega));
-    std::vector<Vector6> poses;
-    for (int view = 0; view < problem->viewCount(); view++)
-        poses.push_back(motion.poseAfter(view, stepOf(-omega, omega.cross(about))));
+    const double PART = 1e-5;
+    const std::unique_ptr<Problem> problem = makeRow(random, 0.1, 3);
+    const std::vector<Vector6> from = posesOf(*problem);
+    std::vector<Vector6> steps;
+    for (const Vector6& pose : from)
+        steps.push_back((turnedTogether(pose, PART*omega, about) - turnedTogether(pose, -PART*omega, about))/(2*PART));
+    ViewMotion motion(*problem, treeOfViews(*problem));
+    const std::vector<Vector6> poses = motion.posesAfter(steps);
     for (int cluster = 0; cluster < (int)problem->scene().clusters().size(); cluster++)
     {
         if (problem->observationsOf(cluster).empty())
             continue;
-        const Eigen::VectorXd before = problem->scene().clusters()[cluster].values;
-        const Vec3d point(before.data());
-        Eigen::VectorXd after = before;
+        Eigen::VectorXd after = problem->scene().clusters()[cluster].values;
+        const Vec3d point(after.data());
         motion.bendPoints(*problem, cluster, after);
         const Vec3d moved = Vec3d(after.data()) + omega.cross(point - about);
-        for (int view = 0; view < problem->viewCount(); view++)
-            CHECK(norm(seenBy(poses[view], moved) - seenBy(poseOfView(*problem, view), point)) < 1e-8);
+        for (int view = 0; view < VIEWS; view++)
+            CHECK(norm(seenBy(poses[view], moved) - seenBy(from[view], point)) < 1e-4);
+    }
+}
+
+TEST_CASE("A row of views that bends keeps its base lines", "[view-motion]")
+{
+    Random random(93);
+    CAPTURE(seed());
+    const std::unique_ptr<Problem> problem = makeRow(random, 0, 0);
+    const Vec3d turn(0, 0.5/VIEWS, 0);          // rad, of each view to the one before, in the scene
+    std::vector<Vec3d> middles;
+    std::vector<Vector6> steps;
+    Vec3d way;
+    for (int view = 0; view < VIEWS; view++)
+    {
+        middles.push_back(middleOf(*problem, view));
+        if (view > 0)
+            way += (view - 0.5)*turn.cross(middles[view] - middles[view - 1]);
+        const Vec3d change = -view*turn;        // rvec is 0
+        steps.push_back(joined(change, -way - change.cross(middles[view])));
+    }
+    ViewMotion motion(*problem, treeOfViews(*problem));
+    const std::vector<Vector6> from = posesOf(*problem), poses = motion.posesAfter(steps);
+    std::vector<Vec3d> moved;
+    for (int view = 0; view < VIEWS; view++)
+    {
+        Matx33d R;
+        Rodrigues(Vec3d(poses[view].data()), R);
+        moved.push_back(R.t()*(seenBy(from[view], middles[view]) - Vec3d(poses[view].data() + 3)));
+    }
+    for (int view = 1; view < VIEWS; view++)
+    {
+        CAPTURE(view);
+        const double before = norm(middles[view] - middles[view - 1]);
+        CHECK(std::abs(norm(moved[view] - moved[view - 1]) - before) < 1e-3*before);
     }
 }

@@ -40,7 +40,7 @@ void DampedSteps::run(ReducedCost& cost)
         cost.setStep(dampedStep(cost.information(), damping, foretold));
         // Too little to matter, or to be seen: of exact data, also of those that were printed with some digits, it is rounding.
         const double rounding = 2*RESIDUAL_ROUNDING*std::sqrt(squares) + RESIDUAL_ROUNDING*RESIDUAL_ROUNDING*equations;
-        const double negligible = std::max(near, std::min(std::max(0.1*change, LEFT_BY_POINTS), LEFT_OF_NOISE/equations));
+        const double negligible = std::max(leastGain, std::min(std::max(0.1*change, LEFT_BY_POINTS), LEFT_OF_NOISE/equations));
         if (foretold <= std::max(squares*negligible, rounding))
         {
             cost.restore();

@@ -18,7 +18,7 @@ struct DampedSteps
     double damping;         //!< of the first step; out: of the next
     int iterations;         //!< at most; out: how many were made
     bool isConverged;       //!< out: the last would not change the cost by more
-    double near = 0;        //!< of the cost, relative: what no step is made for; 0: down to what cannot matter
+    double leastGain = 0;   //!< of the cost, relative: less is worth no step; 0: down to what cannot matter
 
     //! From the state of the cost, which was linearised there. The state is where they end.
     void run(ReducedCost& cost);

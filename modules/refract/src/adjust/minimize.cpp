@@ -36,12 +36,12 @@ struct TrustRegion
     int iterations = 0;     //!< at most; out: how many were made
     ceres::TerminationType outcome = ceres::NO_CONVERGENCE;     //!< out
     bool isIdle = false;    //!< out: the same again would not move anything
-    double near = 0;        //!< of a scene's cost, relative: what no step is made for; 0: down to what cannot matter
+    double leastGain = 0;   //!< of a scene's cost, relative: less is worth no step; 0: down to what cannot matter
 
-    void solve(ceres::Problem& problem, bool isSparse);
+    void solve(ceres::Problem& problem, bool isScene, bool isSparse);
 };
 
-void TrustRegion::solve(ceres::Problem& problem, bool isSparse)
+void TrustRegion::solve(ceres::Problem& problem, bool isScene, bool isSparse)
 {
     ceres::Solver::Options options;
     const double firstRadius = options.initial_trust_region_radius;
@@ -56,7 +56,7 @@ void TrustRegion::solve(ceres::Problem& problem, bool isSparse)
     options.num_threads = 1;        // the cost has its own
     // At bounds Ceres searches along each step. What is not found soon is not found: the step is refused, and the next is shorter.
     options.max_num_line_search_step_size_iterations = 3;
-    if (isSparse)                   // derivatives of where it is tried are dear, and what is predicted from there is far off
+    if (isScene)                    // derivatives of where it is tried are dear, and what is predicted from there is far off
         options.line_search_interpolation_type = ceres::QUADRATIC;
     options.logging_type = ceres::SILENT;
     ceres::Solver::Summary summary;
@@ -97,7 +97,7 @@ class Minimization
 {
 public:
     explicit Minimization(Problem& problem);
-    FitOutcome run(const TermCriteria& criteria, double& damping);
+    FitOutcome run(const TermCriteria& criteria, double& damping, double leastGain);
 
 private:
     bool solve(TrustRegion& region);
@@ -157,12 +157,12 @@ void Minimization::solve(TrustRegion& region, const std::vector<double*>& state)
             parameters.push_back(state[block]);
         problem.AddResidualBlock(groups.back().get(), nullptr, parameters);
     }
-    region.solve(problem, groups.size() > 1);
+    region.solve(problem, problem_.hasScene(), groups.size() > 1);
 }
 
 void Minimization::descend(TrustRegion& region)
 {
-    DampedSteps steps = { (double)problem_.equationCount(), region.change, 1/region.radius, region.iterations, false, region.near };
+    DampedSteps steps = { (double)problem_.equationCount(), region.change, 1/region.radius, region.iterations, false, region.leastGain };
     const double begin = cost_->squaredError(), before = region.radius;
     steps.run(*cost_);
     region.iterations = std::max(1, steps.iterations);
@@ -289,7 +289,7 @@ bool Minimization::isAtMinimum() const
 /** Along curved valleys (distance against focal length) the steps of Levenberg and Marquardt creep, near the edge of the
 domain those of the dogleg do: they take turns. Where a change of the cost is small that is not at a minimum, a smaller one is
 asked for. */
-FitOutcome Minimization::run(const TermCriteria& criteria, double& damping)
+FitOutcome Minimization::run(const TermCriteria& criteria, double& damping, double leastGain)
 {
     const int ITERATIONS_BETWEEN = 20;
     const bool stopsByChange = (criteria.type & TermCriteria::EPS) != 0;
@@ -298,7 +298,7 @@ FitOutcome Minimization::run(const TermCriteria& criteria, double& damping)
     const int IDLE = 40;                // turns of a single step in a row: more would not help either
     const TrustRegion fresh[] = { { ceres::LEVENBERG_MARQUARDT, change, radius }, { ceres::DOGLEG, change, radius } };
     TrustRegion regions[] = { fresh[0], fresh[1] };
-    regions[0].near = stopsByChange ? 0 : criteria.epsilon;
+    regions[0].leastGain = problem_.hasScene() ? leastGain : 0;
     regions[0].radius = std::max(1/damping, radius);        // exact data end where no step gains anything, whatever the damping
     int left = criteria.maxCount, idle = 0;
     for (int turn = 0; left > 0 && idle < IDLE && !(regions[0].isIdle && regions[1].isIdle); turn = 1 - turn)
@@ -309,7 +309,7 @@ FitOutcome Minimization::run(const TermCriteria& criteria, double& damping)
             break;
         damping = 1/regions[0].radius;
         const bool isHeldAnew = region.outcome != ceres::FAILURE && isOnBound() && holdAtBounds();
-        if (region.outcome == ceres::CONVERGENCE && !isHeldAnew && (region.near > 0 || isAtMinimum()))
+        if (region.outcome == ceres::CONVERGENCE && !isHeldAnew && (region.leastGain > 0 || isAtMinimum()))
             return FitOutcome();
         left -= region.iterations;
         idle = region.iterations > 1 ? 0 : idle + 1;
@@ -334,10 +334,10 @@ FitOutcome Minimization::run(const TermCriteria& criteria, double& damping)
 
 } // namespace
 
-FitOutcome minimize(Problem& problem, const TermCriteria& criteria, double& damping)
+FitOutcome minimize(Problem& problem, const TermCriteria& criteria, double& damping, double leastGain)
 {
     const FitOutcome start = problem.findPointWithoutImage();
-    return start.converged() ? Minimization(problem).run(criteria, damping) : start;
+    return start.converged() ? Minimization(problem).run(criteria, damping, leastGain) : start;
 }
 
 FitOutcome minimize(Problem& problem, const TermCriteria& criteria)

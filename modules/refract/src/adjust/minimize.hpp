@@ -14,9 +14,10 @@ const double FIRST_DAMPING = 1e-4;       //!< as Ceres'
 /** The least squares near where the problem is.
 @return CONVERGED where the step that is left is far below what the noise does; MAX_ITERATIONS where criteria.maxCount
 iterations, or all that moved anything, did not come there and the criteria ask for it (EPS); or why it cannot begin, as NO_IMAGE.
-The problem is where the fit has come to. Criteria without EPS end where the next step would gain less than epsilon of a scene's cost.
-@param damping of a scene's first step; out: of the next: who minimises again from there begins with it */
-FitOutcome minimize(Problem& problem, const TermCriteria& criteria, double& damping);
+The problem is where the fit has come to.
+@param damping of a scene's first step; out: of the next: who minimises again from there begins with it
+@param leastGain of a scene's cost, relative: it ends where a step would gain less, at a minimum or not; 0: not before */
+FitOutcome minimize(Problem& problem, const TermCriteria& criteria, double& damping, double leastGain = 0);
 FitOutcome minimize(Problem& problem, const TermCriteria& criteria);
 
 }} // namespace

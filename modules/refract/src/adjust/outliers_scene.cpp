@@ -143,6 +143,9 @@ bool SceneOutliers::bringBack(Masks& inliers, double scale, std::vector<uchar>& 
     std::vector<Point3d> points = problem_.scene().points();
     const int count = (int)points.size();
     returned.resize(count, 0);
+    std::vector<uchar> wasUsed(count);
+    for (int point = 0; point < count; point++)
+        wasUsed[point] = problem_.scene().isUsed(point);
     const Masks before = inliers;
     Masks trial = inliers;
     for (size_t i = 0; i < trial.size(); i++)
@@ -179,7 +182,6 @@ bool SceneOutliers::bringBack(Masks& inliers, double scale, std::vector<uchar>& 
                 continue;
             }
             points[point] = midpoints[point];
-            returned[point] = 1;
             found = true;
         }
         // What has come back is decided.
@@ -191,7 +193,11 @@ bool SceneOutliers::bringBack(Masks& inliers, double scale, std::vector<uchar>& 
                     trial[i][row] = 0;
                 }
     }
-    return found && bringBackWhatLengthsAllow(points, before, scale, inliers);
+    if (!found || !bringBackWhatLengthsAllow(points, before, scale, inliers))
+        return false;
+    for (int point = 0; point < count; point++)
+        returned[point] = returned[point] || (!wasUsed[point] && problem_.scene().isUsed(point));
+    return true;
 }
 
 Masks SceneOutliers::candidates() const

@@ -55,29 +55,22 @@ static VectorXd moved(const ParameterBlock& block, const VectorXd& from, const V
 
 bool ReducedCost::isPose(size_t variable) const { return problem_.blocks()[variable_[variable]].kind == ParameterBlock::POSE; }
 
-//! @param turnOf by how much the rvec of a variable pose changes
-void ReducedCost::turnViews(const std::function<Vec3d(size_t)>& turnOf)
-{
-    std::vector<Vec3d> turns(problem_.viewCount());
-    for (size_t i = 0; i < variable_.size(); i++)
-        if (isPose(i))
-            turns[problem_.blocks()[variable_[i]].index] = turnOf(i);
-    if (anchor_->motion)
-        anchor_->motion->turn(turns);
-}
-
 void ReducedCost::setStep(const VectorXd& step)
 {
-    turnViews([&](size_t i) { return Vec3d(step.data() + anchor_->space.first[variable_[i]]); });
+    std::vector<Vector6> steps(anchor_->motion ? problem_.viewCount() : 0, Vector6::Zero());
+    for (size_t i = 0; i < variable_.size(); i++)
+        if (isPose(i))
+            steps[problem_.blocks()[variable_[i]].index] = step.segment<6>(anchor_->space.first[variable_[i]]);
+    const std::vector<Vector6> poses = anchor_->motion ? anchor_->motion->posesAfter(steps) : steps;
     for (size_t i = 0; i < variable_.size(); i++)
     {
         const ParameterBlock& block = problem_.blocks()[variable_[i]];
-        const VectorXd own = step.segment(anchor_->space.first[variable_[i]], anchor_->space.columnsOf(variable_[i]));
         Eigen::Map<VectorXd> state(state_[i], block.values.size());
         if (isPose(i))
-            state = anchor_->motion->poseAfter(block.index, own);
+            state = poses[block.index];
         else
-            state = moved(block, anchor_->values[i], own);
+            state = moved(block, anchor_->values[i],
+                          step.segment(anchor_->space.first[variable_[i]], anchor_->space.columnsOf(variable_[i])));
     }
 }
 
@@ -94,14 +87,18 @@ void ReducedCost::restore()
 //! The step of the free coordinates that leads from the anchor to where the problem is.
 VectorXd ReducedCost::stepFromAnchor()
 {
-    turnViews([&](size_t i) { return Vec3d(problem_.blocks()[variable_[i]].values.data()) - Vec3d(anchor_->values[i].data()); });
+    std::vector<Vector6> steps;
+    for (int view = 0; anchor_->motion && view < problem_.viewCount(); view++)
+        steps.push_back(problem_.blocks()[problem_.poseBlock(view)].values);
+    if (anchor_->motion)
+        steps = anchor_->motion->stepsTo(steps);
     VectorXd step = VectorXd::Zero(anchor_->space.count);
     for (size_t i = 0; i < variable_.size(); i++)
     {
         const ParameterBlock& block = problem_.blocks()[variable_[i]];
         auto own = step.segment(anchor_->space.first[variable_[i]], anchor_->space.columnsOf(variable_[i]));
         if (isPose(i))
-            own = anchor_->motion->stepTo(block.index, block.values);
+            own = steps[block.index];
         else
             own = transposeTimesVector(anchor_->space.bases[variable_[i]], block.values - anchor_->values[i]);
     }
@@ -112,16 +109,17 @@ void ReducedCost::predictInner()
 {
     const VectorXd step = stepFromAnchor();
     VectorXd inner = anchor_->inner;
-    int at = 0, cluster = 0;
-    for (const InnerBlock& block : anchor_->information.inner)
+    int at = 0;
+    for (int i = 0; i < (int)anchor_->information.inner.size(); i++)
     {
+        const InnerBlock& block = anchor_->information.inner[i];
         const int size = (int)block.byOuter.rows();
         VectorXd own(block.columns.size());
         for (size_t k = 0; k < block.columns.size(); k++)
             own[k] = step[block.columns[k]];
         const VectorXd change = timesVector(block.byOuter, own);
         if (anchor_->motion)
-            anchor_->motion->bendPoints(problem_, cluster++, inner.segment(at, size));
+            anchor_->motion->bendPoints(problem_, i, inner.segment(at, size));
         inner.segment(at, size) += change;
         at += size;
     }

@@ -9,7 +9,6 @@
 #include "adjust/view_motion.hpp"
 #include <ceres/cost_function.h>
 #include <ceres/evaluation_callback.h>
-#include <functional>
 
 namespace cv { namespace refract {
 
@@ -68,7 +67,6 @@ private:
     };
     bool move();
     bool isPose(size_t variable) const;
-    void turnViews(const std::function<Vec3d(size_t)>& turnOf);
     Eigen::VectorXd stepFromAnchor();
     void predictInner();
     std::vector<int> blocksOf(int group) const;

@@ -34,6 +34,7 @@ FitOutcome RobustFit::run()
 {
     const int ROUNDS = 20;
     FitOutcome outcome;
+    returned_.clear();
     for (int round = 0; round < ROUNDS; round++)
     {
         outcome = isRobust_ ? rejectOutliers() : minimize(problem_, criteria_, damping_);
@@ -108,7 +109,8 @@ static double medianScale(const std::vector<double>& scales, const std::vector<s
 FitOutcome RobustFit::reweightGradually()
 {
     const int ROUNDS = 30;
-    const TermCriteria few(TermCriteria::COUNT, 5, problem_.hasScene() ? 1e-3 : 0);
+    const double LEAST_GAIN = 1e-3;         // of a scene: then weights change more than steps do
+    const TermCriteria few(TermCriteria::COUNT, 5, 0);
     double last = std::numeric_limits<double>::infinity();
     FitOutcome outcome;
     for (int round = 0; round < ROUNDS && outcome.isUsable(); round++)
@@ -132,7 +134,7 @@ FitOutcome RobustFit::reweightGradually()
             problem_.setRootWeights(i, rootWeights);
         }
         // None has an image, as where given poses are turned round?
-        outcome = problem_.pointCount() == 0 ? checkMajority(0) : minimize(problem_, few, damping_);
+        outcome = problem_.pointCount() == 0 ? checkMajority(0) : minimize(problem_, few, damping_, LEAST_GAIN);
     }
     return outcome;
 }

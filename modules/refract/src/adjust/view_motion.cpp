@@ -4,7 +4,6 @@
 
 #include "adjust/view_motion.hpp"
 #include "math/robust_scale.hpp"
-#include "math/rotation.hpp"
 #include <map>
 #include <queue>
 
@@ -28,7 +27,8 @@ std::vector<std::vector<int> > viewsOfPoints(const Problem& problem)
     return all;
 }
 
-//! Of each view: with which others it shares points, one after the other along a point's views, and how many.
+//! Of each view: with which others it shares points, and how many. Of a point's views only those that follow each other count: a tree asks
+//! no more.
 std::vector<std::map<int, int> > sharedPoints(const Problem& problem)
 {
     std::vector<std::map<int, int> > shared(problem.viewCount());
@@ -57,10 +57,31 @@ std::vector<Vec3d> middlesOfViews(const Problem& problem)
     return middles;
 }
 
-//! d(R rvec) along a change of rvec.
-Matx33d derivativeAlong(const Rotation& rotation, const Vec3d& turn)
+Matx33d cross(const Vec3d& v)
 {
-    return turn[0]*rotation.dR[0] + turn[1]*rotation.dR[1] + turn[2]*rotation.dR[2];
+    return Matx33d(0, -v[2], v[1], v[2], 0, -v[0], -v[1], v[0], 0);
+}
+
+//! Of the matrix nearest to what cross() gives.
+Vec3d fromCross(const Matx33d& m)
+{
+    return 0.5*Vec3d(m(2, 1) - m(1, 2), m(0, 2) - m(2, 0), m(1, 0) - m(0, 1));
+}
+
+//! Of those of one rotation, the one that is nearest.
+Vec3d nearestRotationVector(const Matx33d& R, const Vec3d& near)
+{
+    const Vec3d rvec = rotationVector(R);
+    const double angle = norm(rvec);
+    const Vec3d axis = angle > 0 ? rvec/angle : near/std::max(norm(near), DBL_MIN);
+    return axis*(angle + 2*CV_PI*std::round((axis.dot(near) - angle)/(2*CV_PI)));
+}
+
+Vector6 joined(const Vec3d& rotation, const Vec3d& translation)
+{
+    Vector6 both;
+    both << rotation[0], rotation[1], rotation[2], translation[0], translation[1], translation[2];
+    return both;
 }
 
 } // namespace
@@ -100,55 +121,72 @@ std::vector<ViewEdge> treeOfViews(const Problem& problem)
     return tree;
 }
 
-ViewMotion::ViewMotion(const Problem& problem, const std::vector<ViewEdge>& tree) : tree_(tree)
+ViewMotion::ViewMotion(const Problem& problem, const std::vector<ViewEdge>& tree) : tree_(tree), sceneScale_(problem.sceneScale())
 {
     const std::vector<Vec3d> middles = middlesOfViews(problem);
     for (int view = 0; view < problem.viewCount(); view++)
     {
         const double* const pose = problem.blocks()[problem.poseBlock(view)].values.data();
-        views_.push_back(View{ Vec3d(pose), Vec3d(pose + 3), middles[view], Matx33d::zeros(), Vec3d() });
+        const Rotation rotation(pose);
+        Matx33d turnByRvec;
+        for (int k = 0; k < 3; k++)
+            for (int i = 0; i < 3; i++)
+                turnByRvec(i, k) = fromCross(rotation.R.t()*rotation.dR[k])[i];
+        views_.push_back(View{ rotation, Vec3d(pose), Vec3d(pose + 3), turnByRvec, sceneScale_*middles[view], rotation.R,
+                               Matx33d::zeros(), Vec3d() });
     }
 }
 
+//! @param turns R' = R exp(turn)
 void ViewMotion::turn(const std::vector<Vec3d>& turns)
 {
     for (size_t i = 0; i < views_.size(); i++)
     {
-        View& view = views_[i];
-        const Rotation rotation(view.rvec.val);
-        const Matx33d after = rotationMatrix(view.rvec + turns[i]);
-        view.bend = (after - derivativeAlong(rotation, turns[i])).t()*rotation.R - Matx33d::eye();
+        const Matx33d turned = rotationMatrix(turns[i]);
+        views_[i].after = views_[i].rotation.R*turned;
+        views_[i].bend = turned.t() - Matx33d::eye() + cross(turns[i]);     // what is seen turns the other way
     }
     for (const ViewEdge& edge : tree_)
     {
         const View& from = views_[edge.from];
         View& to = views_[edge.to];
-        to.way = from.way + 0.5*(from.bend + to.bend)*(to.middle - from.middle);
+        to.excess = from.excess + 0.5*(from.bend + to.bend)*(to.middle - from.middle);
     }
 }
 
-Vector6 ViewMotion::poseAfter(int view, const Vector6& step) const
+std::vector<Vector6> ViewMotion::posesAfter(const std::vector<Vector6>& steps)
 {
-    const View& from = views_[view];
-    const Rotation rotation(from.rvec.val);
-    const Vec3d turn(step.data()), shift(step.data() + 3), rvec = from.rvec + turn;
-    const Vec3d way = from.way - rotation.R.t()*(shift + rotation.derivativeOf(from.middle)*turn);
-    const Vec3d tvec = rotation.R*from.middle + from.tvec - rotationMatrix(rvec)*(from.middle + way);
-    Vector6 pose;
-    pose << rvec[0], rvec[1], rvec[2], tvec[0], tvec[1], tvec[2];
-    return pose;
+    std::vector<Vec3d> turns;
+    for (size_t i = 0; i < views_.size(); i++)
+        turns.push_back(views_[i].turnByRvec*Vec3d(steps[i].data()));
+    turn(turns);
+    std::vector<Vector6> poses;
+    for (size_t i = 0; i < views_.size(); i++)
+    {
+        const View& view = views_[i];
+        const Vec3d change(steps[i].data()), shift(steps[i].data() + 3);
+        const Vec3d way = view.excess - view.rotation.R.t()*(shift + view.rotation.derivativeOf(view.middle)*change);
+        poses.push_back(joined(nearestRotationVector(view.after, view.rvec + change),
+                               view.rotation.R*view.middle + view.tvec - view.after*(view.middle + way)));
+    }
+    return poses;
 }
 
-Vector6 ViewMotion::stepTo(int view, const Vector6& pose) const
+std::vector<Vector6> ViewMotion::stepsTo(const std::vector<Vector6>& poses)
 {
-    const View& from = views_[view];
-    const Rotation rotation(from.rvec.val);
-    const Vec3d rvec(pose.data()), tvec(pose.data() + 3), turn = rvec - from.rvec;
-    const Vec3d way = rotationMatrix(rvec).t()*(rotation.R*from.middle + from.tvec - tvec) - from.middle - from.way;
-    const Vec3d shift = -(rotation.R*way) - rotation.derivativeOf(from.middle)*turn;
-    Vector6 step;
-    step << turn[0], turn[1], turn[2], shift[0], shift[1], shift[2];
-    return step;
+    std::vector<Vec3d> turns;
+    for (size_t i = 0; i < views_.size(); i++)
+        turns.push_back(rotationVector(views_[i].rotation.R.t()*rotationMatrix(Vec3d(poses[i].data()))));
+    turn(turns);
+    std::vector<Vector6> steps;
+    for (size_t i = 0; i < views_.size(); i++)
+    {
+        const View& view = views_[i];
+        const Vec3d change = view.turnByRvec.solve(turns[i], DECOMP_SVD), tvec(poses[i].data() + 3);
+        const Vec3d way = view.after.t()*(view.rotation.R*view.middle + view.tvec - tvec) - view.middle - view.excess;
+        steps.push_back(joined(change, -(view.rotation.R*way) - view.rotation.derivativeOf(view.middle)*change));
+    }
+    return steps;
 }
 
 void ViewMotion::bendPoints(const Problem& problem, int cluster, Eigen::Ref<Eigen::VectorXd> points) const
@@ -161,7 +199,7 @@ void ViewMotion::bendPoints(const Problem& problem, int cluster, Eigen::Ref<Eige
         if (isBent[place] || !(image.rootWeights[o.row] > 0))
             continue;
         const View& view = views_[image.view];
-        const Vec3d change = view.way + view.bend*(Vec3d(&points[3*place]) - view.middle);
+        const Vec3d change = (view.excess + view.bend*(sceneScale_*Vec3d(&points[3*place]) - view.middle))/sceneScale_;
         points.segment<3>(3*place) += Eigen::Map<const Eigen::Vector3d>(change.val);
         isBent[place] = true;
     }

@@ -6,6 +6,7 @@
 #define OPENCV_REFRACT_VIEW_MOTION_HPP
 
 #include "adjust/problem.hpp"
+#include "math/rotation.hpp"
 
 namespace cv { namespace refract {
 
@@ -25,31 +26,33 @@ std::vector<ViewEdge> treeOfViews(const Problem& problem);
 
 A view turns about the middle of what it sees, so that one that is hardly tied to its points goes round them. Middles keep their places
 to each other, turned by half of what either view turns: where a long strip bends by degrees, base lines and points bend with it, while
-straight lines of the poses would stretch what is between them. */
+straight lines of the poses would stretch what is between them. Poses and steps: rvec, t; one a view. */
 class ViewMotion
 {
 public:
     //! From where the problem is.
     ViewMotion(const Problem& problem, const std::vector<ViewEdge>& tree);
 
-    //! First: by how much the rvec of each view changes.
-    void turn(const std::vector<Vec3d>& turns);
-    //! The pose of a view after a step, rvec and tvec, of which the turn was said; and the step to a pose.
-    Vector6 poseAfter(int view, const Vector6& step) const;
-    Vector6 stepTo(int view, const Vector6& pose) const;
-    //! Takes the points of a cluster along with a view that sees each, by what is above first order.
+    std::vector<Vector6> posesAfter(const std::vector<Vector6>& steps);
+    std::vector<Vector6> stepsTo(const std::vector<Vector6>& poses);
+    //! Takes the points of a cluster along with a view that sees each, by what of the last motion is above first order.
     void bendPoints(const Problem& problem, int cluster, Eigen::Ref<Eigen::VectorXd> points) const;
 
 private:
     struct View
     {
+        Rotation rotation;
         Vec3d rvec, tvec;
+        Matx33d turnByRvec;     //!< R(rvec + d) = R(rvec) exp(turnByRvec d), to first order
         Vec3d middle;           //!< of the points that it sees
-        Matx33d bend;           //!< of the rotation about it, above first order, in the scene
-        Vec3d way;              //!< of the middle, above first order
+        Matx33d after;          //!< R' of the last motion
+        Matx33d bend;           //!< of its rotation about the middle, above first order
+        Vec3d excess;           //!< of the middle's way, above first order
     };
+    void turn(const std::vector<Vec3d>& turns);
     std::vector<ViewEdge> tree_;
     std::vector<View> views_;
+    double sceneScale_;         //!< scene's units -> those of t, of middles and ways
 };
 
 }} // namespace

@@ -169,11 +169,19 @@ private:
     std::vector<std::vector<bool> > isFree_;
 };
 
+bool arePlacesFree(const Problem& problem)
+{
+    return std::any_of(problem.blocks().begin(), problem.blocks().end(), [](const ParameterBlock& block)
+    {
+        return block.kind == ParameterBlock::PLACE && std::count(block.isFree.begin(), block.isFree.end(), true) > 0;
+    });
+}
+
 //! Whether a window is where another minimum may be.
 bool haveWindowsTurned(const Rig& before, const Rig& after)
 {
     for (int c = 0; c < before.count(); c++)
-        if (angleBetweenPlaces(before.cameras[c].window(), after.cameras[c].window()) > ROUGHLY_SAME_ANGLE)
+        if (before.owns(c) && angleBetweenPlaces(before.cameras[c].window(), after.cameras[c].window()) > SAME_ANGLE)
             return true;
     return false;
 }
@@ -201,7 +209,7 @@ FitOutcome searchRobustBundle(Problem& problem, const SceneOutliers& outliers, R
     const Snapshot start(problem);
     const Rig rig = problem.rig();
     const FitOutcome outcome = approachAndRun(problem, outliers, fit);
-    if (outcome.converged() && !haveWindowsTurned(rig, problem.rig()))
+    if (!arePlacesFree(problem) || (outcome.converged() && !haveWindowsTurned(rig, problem.rig())))
         return outcome;
     const Snapshot found(problem);
     const double variance = varianceOf(problem);
