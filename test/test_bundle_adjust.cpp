@@ -523,3 +523,25 @@ TEST_CASE("What is no covariance of the rig is refused by name", "[bundle][prior
                Contains("cameraCovariances and rigCovariance are both given"));
     CHECK_THAT(fault(Mat(), NaN), Contains("lengthScaleStd"));
 }
+
+TEST_CASE("Who asks a bundle adjustment for iterations alone gets them, whatever epsilon is", "[bundle]")
+{
+    for (int flags : { 0, (int)GLASS_ROBUST })
+    {
+        std::vector<double> rms;
+        for (double epsilon : { 0., 1. })
+        {
+            Random random(63);
+            CAPTURE(seed(), flags, epsilon);
+            const RigTruth truth = oneCamera();
+            const BundleScene scene = makeMovingScene(truth, 6, 50, random, 0.1);
+            BundleCall call(truth, scene, random);
+            rms.push_back(refractiveBundleAdjust(call.images, call.cameras, call.windows, call.Rs, call.Ts, call.rvecs, call.tvecs,
+                                                 call.points, call.lengths, call.deviations, call.covariance, call.pointDeviations,
+                                                 call.perViewErrors, call.inliers, flags, noArray(),
+                                                 TermCriteria(TermCriteria::COUNT, 50, epsilon)));
+        }
+        CHECK(rms[0] == rms[1]);
+        CHECK(rms[0] < 0.2);
+    }
+}
