@@ -288,7 +288,7 @@ bool Minimization::isAtMinimum() const
 
 /** Along curved valleys (distance against focal length) the steps of Levenberg and Marquardt creep, near the edge of the
 domain those of the dogleg do: they take turns. Where a change of the cost is small that is not at a minimum, a smaller one is
-asked for. */
+asked for; of a scene, whose turns by the dogleg are dear, of the same steps first. */
 FitOutcome Minimization::run(const TermCriteria& criteria, double& damping, double leastGain)
 {
     const int ITERATIONS_BETWEEN = 20;
@@ -301,7 +301,8 @@ FitOutcome Minimization::run(const TermCriteria& criteria, double& damping, doub
     regions[0].leastGain = problem_.hasScene() ? leastGain : 0;
     regions[0].radius = std::max(1/damping, radius);        // exact data end where no step gains anything, whatever the damping
     int left = criteria.maxCount, idle = 0;
-    for (int turn = 0; left > 0 && idle < IDLE && !(regions[0].isIdle && regions[1].isIdle); turn = 1 - turn)
+    bool isAgain = false;
+    for (int turn = 0; left > 0 && idle < IDLE && !(regions[0].isIdle && regions[1].isIdle); turn = isAgain ? turn : 1 - turn)
     {
         TrustRegion& region = regions[turn];
         region.iterations = std::min(left, ITERATIONS_BETWEEN);
@@ -313,6 +314,7 @@ FitOutcome Minimization::run(const TermCriteria& criteria, double& damping, doub
             return FitOutcome();
         left -= region.iterations;
         idle = region.iterations > 1 ? 0 : idle + 1;
+        isAgain = problem_.hasScene() && turn == 0 && !isAgain && region.outcome == ceres::CONVERGENCE && !isHeldAnew;
         if (region.outcome == ceres::CONVERGENCE)
             region.change *= STRICTER;
         if (isHeldAnew && std::any_of(retreat_.begin(), retreat_.end(), [](double part) { return part > 0; }))

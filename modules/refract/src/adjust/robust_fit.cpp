@@ -52,8 +52,9 @@ FitOutcome RobustFit::run()
 
 FitOutcome RobustFit::approach()
 {
-    const TermCriteria few(TermCriteria::COUNT + TermCriteria::EPS, 20, 1e-6);
-    return isRobust_ ? reweightGradually() : minimize(problem_, few, damping_);
+    const double LEAST_GAIN = 1e-6;
+    const TermCriteria few(TermCriteria::COUNT + TermCriteria::EPS, 20, LEAST_GAIN);
+    return isRobust_ ? reweightGradually() : minimize(problem_, few, damping_, LEAST_GAIN);
 }
 
 //! Distances of predicted from observed pixels, of what may have a say; of halves as large as those of whole pixels usually are.
