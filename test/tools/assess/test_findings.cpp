@@ -75,4 +75,6 @@ TEST_CASE("A camera that one view joins to the others is a weak point", "[findin
     c.fit = fitImages(c.data, c.fit.rig, allViews(c.data), 0);
     c.residuals = residualsOf(c.data, c.fit);
     CHECK(says());
+    c.options.flags |= GLASS_USE_POSES;         // each board is where it is said to be, and joins them
+    CHECK_FALSE(says());
 }

@@ -99,9 +99,11 @@ void checkFit(const RigCalibration& c, int camera, CollectedFindings& f)
                                                 depth[2], c.unit.c_str()));
 }
 
-//! One board joins two cameras wherever they are, so that nothing in it shows whether its images are of one moment.
+//! One board joins two cameras wherever they are, so that nothing in it shows whether its images are of one moment. Known poses do.
 void checkLink(const RigCalibration& c, int camera, CollectedFindings& f)
 {
+    if (c.options.flags & GLASS_USE_POSES)
+        return;
     const auto isCommon = [&](int i) {
         const View& view = c.data.views[i];
         const bool glass = view.hasGlass(camera) && view.countGlass() > 1, direct = view.hasDirect(camera) && view.countDirect() > 1;
