@@ -101,3 +101,10 @@ TEST_CASE("A ChArUco board of another size than --size is told by where its mark
         CHECK(failure("8x6", legacy, legacy) == "found");
     }
 }
+
+TEST_CASE("A ChArUco board of the right columns with a marker in the first corner is told of its rows", "[charuco]")
+{
+    for (const char* said : {"6x6", "6x4"})         // squares: as many columns as rows, and more
+        CHECK_THAT(failure("6x5", true, false, said), Catch::Contains("a marker in the first corner, which OpenCV's boards with an odd "
+                                                                      "number of rows of squares do not have"));
+}

@@ -108,12 +108,16 @@ void requireLayout(const MarkerCorners& corners, const std::vector<int>& ids, cv
                              : "the markers of this ChArUco board are where OpenCV put them before 4.6 (a marker in the first corner, of a "
                                "board with an even number of rows): say --legacy");
     const int columns = columnsOf(corners, ids);
-    if (columns == squares.height)
+    if (columns != squares.width && columns == squares.height)
         throw Failure(cv::format("the markers of this ChArUco board are in %d columns of squares: give --size=%dx%d, columns before rows",
                                  columns, squares.height - 1, squares.width - 1));
     if (columns > 0 && columns != squares.width)
         throw Failure(cv::format("the markers of this ChArUco board are in %d columns of squares, not in the %d of --size=%dx%d: give %d "
                                  "columns of inner corners", columns, squares.width, squares.width - 1, squares.height - 1, columns - 1));
+    if (columns == squares.width)
+        throw Failure(cv::format("this ChArUco board has a marker in the first corner, which OpenCV's boards with an odd number of rows of "
+                                 "squares do not have (%d with --size=%dx%d): count the rows; with an odd number of inner ones, --legacy",
+                                 squares.height, squares.width - 1, squares.height - 1));
 }
 
 #if !REFRACT_OPENCV_AT_LEAST_4_7
