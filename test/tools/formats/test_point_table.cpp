@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // Tables of points that several cameras saw, in the forms of other programs.
+#include "console/csv.hpp"
 #include "console/failure.hpp"
 #include "formats/foreign_files.hpp"
 #include "formats/point_table.hpp"
@@ -62,6 +63,12 @@ TEST_CASE("Tables are read as spreadsheets of any country write them", "[foreign
     }
     const CsvTable thousands = read(f, "id;u1;v1\na;1.234,5;3\n");
     CHECK_THROWS_WITH(thousands.number(thousands.rows()[0], "u1"), Catch::Contains("u1 must be a number, not '1.234,5'"));
+    CHECK(read(f, "id;u1;v1\na;1,234;3,5\n").rows().size() == 1);
+    CHECK(read(f, "id;u1;v1\na;0,234;3.5\n").rows().size() == 1);
+    CHECK(failure(f, "id;u1;v1\na;640.25;3\nb;1,234;3\n") == "'" + f/"t.csv" + "' line 3: '1,234' may be 1234 or 1.234, as line 2 has "
+          "a decimal point: write numbers in one way, without marks of thousands");
+    CHECK_THAT(failure(f, "id\tu1\tv1\nb\t-1,234\t0.5\n"), Catch::Contains("line 2: '-1,234' may be"));
+    CHECK(tools::headingOf(saved(f, "h.csv", "\xEF\xBB\xBF# mine\nid;u1\n")) == Cells{"id", "u1"});
     CHECK_THAT(failure(f, std::string("\xFF\xFEi\0d\0,\0u\0", 10)), Catch::Contains("is UTF-16"));
 }
 

@@ -47,8 +47,16 @@ std::vector<std::string> cellsOf(const std::string& line, char separator)
         else
             cells.back() += line[i];
     for (std::string& cell : cells)
-        cell = separator == ',' ? trimmed(cell) : withPoint(trimmed(cell));
+        cell = trimmed(cell);
     return cells;
+}
+
+//! 1,234 is another number where commas mark thousands.
+bool maySeparateThousands(const std::string& cell)
+{
+    const size_t comma = cell.find(','), first = cell.find_first_not_of("+-");
+    return comma != std::string::npos && withPoint(cell) != cell && cell.size() - comma == 4 && cell[first] != '0' && comma - first <= 3
+           && cell.find_first_not_of("0123456789", comma + 1) == std::string::npos;
 }
 
 std::string joined(const std::vector<std::string>& names)
@@ -57,6 +65,16 @@ std::string joined(const std::vector<std::string>& names)
     for (const std::string& name : names)
         text += (text.empty() ? "" : ",") + name;
     return text;
+}
+
+//! One line; the first one without the mark with which some programs begin UTF-8.
+bool readLine(std::istream& in, std::string& line, int number)
+{
+    if (!std::getline(in, line))
+        return false;
+    if (number == 1 && line.compare(0, 3, "\xEF\xBB\xBF") == 0)
+        line.erase(0, 3);
+    return true;
 }
 
 bool isNothing(const std::string& line) { return trimmed(line).empty() || trimmed(line)[0] == '#'; }
@@ -75,9 +93,7 @@ std::vector<std::string> headingOf(const std::string& path)
 {
     std::ifstream in(path);
     std::string line;
-    while (std::getline(in, line) && isNothing(line)) {}
-    if (line.compare(0, 3, "\xEF\xBB\xBF") == 0)
-        line.erase(0, 3);
+    for (int number = 1; readLine(in, line, number) && isNothing(line); number++) {}
     return cellsOf(line, separatorOf(line));
 }
 
@@ -90,10 +106,8 @@ CsvTable::CsvTable(const std::string& path, const std::vector<std::string>& requ
         throw Failure("there is no file '" + path + "' that can be read");
     char separator = ',';
     std::string line;
-    for (int number = 1; std::getline(in, line); number++)
+    for (int number = 1; readLine(in, line, number); number++)
     {
-        if (number == 1 && line.compare(0, 3, "\xEF\xBB\xBF") == 0)
-            line.erase(0, 3);
         if (number == 1 && (line.compare(0, 2, "\xFF\xFE") == 0 || line.compare(0, 2, "\xFE\xFF") == 0))
             throw Failure("'" + path + "' is UTF-16, as the shell of Windows writes it: save it as UTF-8");
         if (isNothing(line))
@@ -118,6 +132,33 @@ CsvTable::CsvTable(const std::string& path, const std::vector<std::string>& requ
     if (rows_.empty())
         throw Failure("'" + path + "' has no rows: " + what + " begins with the line " + joined(required)
                       + ", and one row a line follows");
+    if (separator != ',')
+        takeDecimalCommas();
+}
+
+void CsvTable::takeDecimalCommas()
+{
+    const Row *withPoints = nullptr, *withThousands = nullptr;
+    std::string thousands;
+    double value;
+    for (Row& row : rows_)
+        for (std::string& cell : row.cells)
+        {
+            if (cell.find('.') != std::string::npos && parseNumber(cell, value))
+                withPoints = &row;
+            if (!withThousands && maySeparateThousands(cell))
+            {
+                withThousands = &row;
+                thousands = cell;
+            }
+            cell = withPoint(cell);
+        }
+    if (!withPoints || !withThousands)
+        return;
+    std::string whole = thousands;
+    whole.erase(whole.find(','), 1);
+    throw Failure(where(*withThousands) + ": '" + thousands + "' may be " + whole + " or " + withPoint(thousands) + ", as line "
+                  + std::to_string(withPoints->line) + " has a decimal point: write numbers in one way, without marks of thousands");
 }
 
 int CsvTable::find(const std::string& name) const

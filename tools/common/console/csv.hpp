@@ -12,7 +12,7 @@ namespace tools {
 
 /** A table from a text file with commas between the cells: a line of column names, then one row a line. Quotes as spreadsheets
 write them; empty lines and those with '#' first are skipped; where the heading has semicolons and no comma, or tabs and none of these,
-they separate, and numbers may have decimal commas.
+they separate, and numbers may have decimal commas: not 1,234 where others have decimal points.
 Everything throws Failure that names file and line. */
 class CsvTable
 {
@@ -44,6 +44,7 @@ public:
 
 private:
     const std::string& cellOf(const Row& row, const std::string& name) const;
+    void takeDecimalCommas();       //!< Failure if commas may mark thousands
 
     std::string path_;
     std::vector<std::string> names_;
