@@ -131,6 +131,31 @@ void checkMatrix(const std::vector<std::pair<Mistake, RigKind>>& cases, int tria
     CHECK(wrong <= 0.01*all);
 }
 
+//! Names of views in a sentence.
+std::set<std::string> viewsIn(const std::string& text)
+{
+    std::set<std::string> names;
+    for (size_t at = text.find("'view"); at != std::string::npos; at = text.find("'view", at + 1))
+        names.insert(text.substr(at + 1, text.find('\'', at + 1) - at - 1));
+    return names;
+}
+
+//! @param isTurned of each camera one image through the window, of one view after the other; or the board moved between those of a view
+std::string saidOfOddImages(RigKind kind, bool isTurned, unsigned salt)
+{
+    scenes::Random random(salt);
+    Scene scene = makeScene(kind, random);
+    takeImages(scene, false, random);
+    RigData& data = scene.calibration.data;
+    for (int c = 0; c < data.cameraCount && isTurned; c++)
+        turnByHalf(data.views[3 + c].glass[c], data.imageSize[c]);
+    if (!isTurned)
+        data.views[3] = look(scene, randomBoard(random), randomBoard(random), true, true, random), data.views[3].stem = "view03";
+    for (View& view : data.views)
+        alignAgain(view, data.cameraCount);
+    return saidOf(scene);
+}
+
 } // namespace
 
 TEST_CASE("Every mistake is called by its name: a sample", "[mistakes][slow]")
@@ -213,21 +238,27 @@ TEST_CASE("A dome given as a pane is named where there are pairs, too", "[mistak
 TEST_CASE("One image of some that is turned, or of another name, is named", "[mistakes][slow]")
 {
     std::cout << "seed " << scenes::seed() << '\n';
-    for (const char* odd : {"turned", "moved"})
+    // Also a scene, whatever the seed, in which the board moved by about a whole square.
+    for (const unsigned salt : {5950u, 5965u - scenes::seed()})
+        for (const bool isTurned : {true, false})
+        {
+            const std::string text = saidOfOddImages(ONE_IN_AIR, isTurned, salt);
+            CAPTURE(isTurned, salt, text);
+            CHECK(text.find("--glass 'view03' left out") != std::string::npos);
+            CHECK(viewsIn(text) == std::set<std::string>{"view03"});
+            CHECK(text.find("--unpaired") == std::string::npos);
+        }
+}
+
+TEST_CASE("Images of two cameras that are turned, or of other names, are named", "[mistakes][slow]")
+{
+    std::cout << "seed " << scenes::seed() << '\n';
+    for (const bool isTurned : {true, false})
     {
-        scenes::Random random(5950);
-        Scene scene = makeScene(ONE_IN_AIR, random);
-        takeImages(scene, false, random);
-        std::vector<View>& views = scene.calibration.data.views;
-        if (odd == std::string("turned"))
-            turnByHalf(views[3].glass[0], scene.calibration.data.imageSize[0]);
-        else
-            views[3] = look(scene, randomBoard(random), randomBoard(random), true, true, random), views[3].stem = "view03";
-        alignAgain(views[3], 1);
-        const std::string text = saidOf(scene);
-        CAPTURE(odd, text);
-        CHECK((text.empty() || text.find("--glass 'view03' left out") != std::string::npos));      // or it was left out already
-        CHECK(text.find("--unpaired") == std::string::npos);
+        const std::string text = saidOfOddImages(STEREO_IN_AIR, isTurned, 5955), second = isTurned ? "view04" : "view03";
+        CAPTURE(isTurned, text);
+        CHECK(text.find("--glass 'view03', --glass2 '" + second + "' left out") != std::string::npos);
+        CHECK(viewsIn(text) == std::set<std::string>{"view03", second});
     }
 }
 

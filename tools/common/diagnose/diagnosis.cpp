@@ -222,7 +222,7 @@ std::vector<std::string> imageMistakes(const CalibrationInput& input, const MixU
     std::vector<std::string> sentences = confirmedClear(input, mixUps, clean);
     if (!sentences.empty())
         return sentences;
-    for (const std::string& sentence : {partOfBoard(input), badCorners(input)})
+    for (const std::string& sentence : {partOfBoard(input, 2), badCorners(input)})
         if (!sentence.empty())
             return {sentence};
     const bool isUnpaired = pairsFromOneMap(input.data) > WINDOWS_PX;
@@ -232,6 +232,9 @@ std::vector<std::string> imageMistakes(const CalibrationInput& input, const MixU
         if (some.px < sound)
             return told(input, {some}, clean);
     }
+    const std::string part = partOfBoard(input, 1);
+    if (!part.empty())
+        return {part};
     if (isUnpaired && areUnrelated(mixUps))
     {
         const Explanation other = imagesOfOtherMoments(input);

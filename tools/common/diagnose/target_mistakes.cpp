@@ -5,6 +5,7 @@
 #include "diagnose/fit_quality.hpp"
 #include "console/table.hpp"
 #include <opencv2/calib3d.hpp>
+#include <set>
 
 using namespace cv;
 using namespace cv::refract;
@@ -64,9 +65,10 @@ PairShift shiftOfPair(const CalibrationInput& input, const View& view, int camer
 
 } // namespace
 
-std::string partOfBoard(const CalibrationInput& input)
+std::string partOfBoard(const CalibrationInput& input, size_t fewest)
 {
     int pairs = 0, apart = 0, shifted = 0;
+    std::set<const View*> views;
     for (const View& view : input.data.views)
         for (int c = 0; c < input.data.cameraCount; c++)
             if (view.isPair(c))
@@ -75,9 +77,11 @@ std::string partOfBoard(const CalibrationInput& input)
                 const PairShift pair = shiftOfPair(input, view, c);
                 apart += pair.isApart;
                 shifted += pair.shift != Point();
+                if (pair.shift != Point())
+                    views.insert(&view);
             }
     // Pairs of different moments are apart by anything, now and then by whole squares.
-    if (shifted == 0 || shifted < MOST*apart)
+    if (views.size() < fewest || shifted < MOST*apart)
         return "";
     return format("in %d of %d pairs the two images show the board a whole row or column apart, so --size is smaller than the board: "
                   "count the inner corners (dots)", shifted, pairs);

@@ -9,8 +9,9 @@
 /* A target that is not as given, found without a fit through the window. Each returns a sentence; empty: no such mistake. */
 namespace tools {
 
-//! The detector finds a part of the board in place of the board, and not the same part in each image.
-std::string partOfBoard(const CalibrationInput& input);
+/** The detector finds a part of the board in place of the board, and not the same part in each image.
+@param fewest views, above 0, that show it: of one alone the board may have moved by about a square */
+std::string partOfBoard(const CalibrationInput& input, size_t fewest);
 
 //! Corners in the direct images that no lens explains.
 std::string badCorners(const CalibrationInput& input);
