@@ -7,6 +7,7 @@ both are named with "or", and that is right; a tilt that hides a motion is in th
 #include "diagnose/mistake_scenes.hpp"
 #include "measure/chi_squared.hpp"
 #include <ctime>
+#include <functional>
 #include <set>
 
 using namespace mistakes;
@@ -271,22 +272,31 @@ TEST_CASE("Images of two cameras in one folder are told by their names", "[mista
     RigData& data = scene.calibration.data;
     const std::vector<View> views = data.views;
     data.cameraCount = 1;
-    data.views.clear();
-    for (int c = 0; c < 2; c++)
-        for (const View& of : views)
-        {
-            View view = of;
-            view.stem = format("cam%d_", c + 1) + of.stem;
-            view.direct[0] = of.direct[c];
-            view.glass[0] = of.glass[c];
-            view.direct[1].clear();
-            view.glass[1].clear();
-            data.views.push_back(view);
-        }
-    const std::string text = saidOf(scene);
-    CAPTURE(text);
-    CHECK(text.find("those of 'cam1...' and of 'cam2...' calibrated apart") != std::string::npos);
-    CHECK(text.find("--unpaired") == std::string::npos);
+    const auto said = [&](const std::function<std::string(int, int)>& nameOf) {
+        data.views.clear();
+        for (int c = 0; c < 2; c++)
+            for (size_t i = 0; i < views.size(); i++)
+            {
+                View view = views[i];
+                view.stem = nameOf(c + 1, (int)i);
+                view.direct[0] = views[i].direct[c];
+                view.glass[0] = views[i].glass[c];
+                view.direct[1].clear();
+                view.glass[1].clear();
+                data.views.push_back(view);
+            }
+        return saidOf(scene);
+    };
+    const std::string first = said([](int camera, int i) { return format("cam%d_view%02d", camera, i); });
+    const std::string last = said([](int camera, int i) { return format("day%d_view%02d_cam%d", i % 2, i/2, camera); });
+    CAPTURE(first, last);
+    CHECK(first.find("those of 'cam1...' and of 'cam2...' calibrated apart") != std::string::npos);
+    CHECK(last.find("those of '...cam1' and of '...cam2' calibrated apart") != std::string::npos);
+    for (const std::string& text : {first, last})
+    {
+        CHECK(text.find("(--direct='...', --glass='...', --direct2='...', --glass2='...')") != std::string::npos);
+        CHECK(text.find("--unpaired") == std::string::npos);
+    }
 }
 
 TEST_CASE("Cameras of which no two names are equal are told that, and no other cause", "[mistakes]")

@@ -64,8 +64,15 @@ std::vector<std::string> runsOf(const std::string& name)
     return runs;
 }
 
-/** Views by one run of their names, if those of each are alike but for it: cam1_3, cam2_3, ... The names' beginnings are the keys. Empty:
-they are not of this form. */
+//! What tells a camera: one run of a name, with a word before it.
+std::string cameraIn(const std::vector<std::string>& runs, size_t run)
+{
+    const bool hasWord = run > 0 && std::isalpha((unsigned char)runs[run - 1][0]);
+    const size_t begin = hasWord ? run - 1 : run;
+    return (begin > 0 ? "..." : "") + (hasWord ? runs[begin] : "") + runs[run] + (run + 1 < runs.size() ? "..." : "");
+}
+
+//! Views by one run of their names, if those of each are alike but for it: cam1_3, cam2_3, ... Empty: they are not of this form.
 std::map<std::string, std::vector<View>> byCameraInName(const std::vector<View>& views, size_t run)
 {
     std::map<std::string, std::vector<View>> cameras;
@@ -75,12 +82,10 @@ std::map<std::string, std::vector<View>> byCameraInName(const std::vector<View>&
         std::vector<std::string> runs = runsOf(view.stem);
         if (runs.size() <= run)
             return {};
-        std::string key, rest;
+        const std::string key = cameraIn(runs, run);
+        std::string rest;
         for (size_t i = 0; i < runs.size(); i++)
-        {
-            key += i <= run ? runs[i] : "";
             rest += i == run ? "*" : runs[i];
-        }
         cameras[key].push_back(view);
         rests[key].insert(rest);
     }
@@ -188,8 +193,11 @@ Explanation imagesOfOtherMoments(const CalibrationInput& input)
 
 Explanation camerasInOneFolder(const CalibrationInput& input)
 {
-    const size_t MOST_RUNS = 6;
-    for (size_t run = 0; run < MOST_RUNS && input.data.cameraCount == 1; run++)
+    const size_t runs = input.data.views.empty() ? 0 : runsOf(input.data.views[0].stem).size();
+    const std::string options = hasPairs(input.data) ? "--direct='...', --glass='...', --direct2='...', --glass2='...'"
+                                                     : "--glass='...', --glass2='...'";
+    Explanation best{"", NO_FIT};
+    for (size_t run = 0; run < runs && input.data.cameraCount == 1; run++)
     {
         std::string sentence;
         double worst = 0.;
@@ -198,13 +206,13 @@ Explanation camerasInOneFolder(const CalibrationInput& input)
             RigData data = input.data;
             data.views = views;
             worst = std::max(worst, medianErrorOfFit(data, input.options));
-            sentence += (sentence.empty() ? "those of '" : " and of '") + key + "...'";
+            sentence += (sentence.empty() ? "those of '" : " and of '") + key + "'";
         }
-        if (!sentence.empty() && worst < NO_FIT)
-            return {sentence + " calibrated apart, so they are of several cameras, or something changed between them: give each "
-                    "camera its own (--glass='...', --glass2='...')", worst};
+        if (!sentence.empty())
+            best = better(best, {sentence + " calibrated apart, so they are of several cameras, or something changed between them: give "
+                                 "each camera its own (" + options + ")", worst});
     }
-    return {"", NO_FIT};
+    return best;
 }
 
 Explanation oddImages(const CalibrationInput& input)
