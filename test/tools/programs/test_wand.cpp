@@ -58,6 +58,16 @@ void writePictures(const TemporaryFolder& f, Wand& wand, const Scene& scene)
     }
 }
 
+//! Each image of a camera gets the name of that so many moments later; the last ones those of the first.
+void makeLater(const TemporaryFolder& f, int camera, int moments, int later)
+{
+    const std::string folder = f / format("cam%d", camera);
+    for (int m = 0; m < moments; m++)
+        std::filesystem::rename(folder + format("/m%03d.png", m), folder + format("/%03d", (m + later) % moments));
+    for (int m = 0; m < moments; m++)
+        std::filesystem::rename(folder + format("/%03d", m), folder + format("/m%03d.png", m));
+}
+
 std::string imagesOf(const TemporaryFolder& f, int cameras)
 {
     std::string text;
@@ -211,6 +221,31 @@ TEST_CASE("refract_bundle says what is wrong with images of a wand", "[tools][bu
     CHECK(mentions(runTool(start + " --wand=200").err, "IMAGES"));
     CHECK(mentions(runTool(start + " --wand=200" + imagesOf(f, 1)).err, "has 2 cameras, and images of 1 are given"));
     CHECK(mentions(runTool(start + " --wand=200 '" + f / "cam1/m00[0-2].png' '" + f / "cam2/m00[0-2].png'").err, "and 8 are needed"));
+}
+
+TEST_CASE("refract_bundle names the one of three cameras whose images of a wand are no use", "[tools][bundle][wand]")
+{
+    Wand wand(4585, 3, 16);
+    const TemporaryFolder f;
+    wand.write(f);
+    writePictures(f, wand, Scene());
+    for (int late : {3, 1})
+    {
+        makeLater(f, late, 16, 2);
+        const ToolResult result = bundleImages(f, 3);
+        makeLater(f, late, 16, 14);
+        CAPTURE(late, scenes::seed(), result.out, result.err);
+        CHECK(result.code == 1);
+        CHECK(mentions(result.err, format("the images of camera %d are of other moments than those of the others, which fit 2 images later",
+                                          late)));
+    }
+    for (int m = 1; m < 16; m++)
+        std::filesystem::copy_file(f / "cam3/m000.png", f / format("cam3/m%03d.png", m),
+                                   std::filesystem::copy_options::overwrite_existing);
+    const ToolResult blind = bundleImages(f, 3);
+    CAPTURE(blind.out, blind.err);
+    CHECK(blind.code == 1);
+    CHECK(mentions(blind.err, "camera 3 sees the wand in 0 of 1"));
 }
 
 TEST_CASE("The images of a wand of the guide are made anew", "[.wand-data]")

@@ -54,6 +54,7 @@ struct WandPlace
     int count() const { return a.count + b.count; }
     double rms() const { return std::sqrt((a.squares + b.squares)/count()); }
     double length() const { return cv::norm(a.X - b.X); }
+    bool seenBy(int camera) const { return a.balls[camera] >= 0 && b.balls[camera] >= 0; }
 };
 
 struct WandLimits

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 using namespace cv;
 
@@ -54,6 +55,9 @@ bool mayHaveWand(const std::vector<Balls>& balls)
     return std::count_if(balls.begin(), balls.end(), [](const Balls& ofCamera) { return ofCamera.size() > 1; }) > 1;
 }
 
+//! Whether a camera is one of these.
+bool mayShowWand(const std::vector<Balls>& balls, int camera) { return balls[camera].size() > 1 && mayHaveWand(balls); }
+
 int withWand(const BallSightings& seen) { return (int)std::count_if(seen.balls.begin(), seen.balls.end(), mayHaveWand); }
 
 /* All moments against a rig. */
@@ -66,32 +70,35 @@ public:
             for (Balls& ofCamera : balls)
                 if (ofCamera.size() != 2)
                     ofCamera.clear();
-        if (std::count_if(clear_.begin(), clear_.end(), mayHaveWand) < FEWEST)
-            clear_ = seen.balls;
+        const std::vector<std::vector<Balls>> clear = clear_;
+        for (int c = 0; !clear.empty() && c < (int)clear[0].size(); c++)
+            if (std::count_if(clear.begin(), clear.end(), [c](const std::vector<Balls>& b) { return mayShowWand(b, c); }) < FEWEST)
+                for (size_t m = 0; m < clear.size(); m++)
+                    clear_[m][c] = seen.balls[m][c];
     }
 
-    //! What a rig makes of the moments, medians; NaN: nothing of most of them. Where enough show two balls and no more, of these.
+    //! What a rig makes of the wand where one camera sees it, medians; NaN: nothing of most moments.
     struct Usual
     {
         double miss;            //!< px, RMS of a wand
         double length;          //!< over the wand's
     };
 
-    //! @param camera whose images are taken so many moments later
-    Usual usual(const RigModel& rig, const WandLimits& limits, int camera = 0, int later = 0) const
+    //! @param camera which sees both balls, at so many moments later than the others
+    Usual usual(const RigModel& rig, const WandLimits& limits, int camera, int later = 0) const
     {
         std::vector<double> misses, lengths;
         int looked = 0;
         for (int m = 0; m < (int)seen_.moments.size(); m++)
         {
             const std::vector<Balls> balls = inStep(m, camera, later);
-            if (!mayHaveWand(balls))
+            if (!mayShowWand(balls, camera))
                 continue;
             const std::vector<WandPlace> places = WandFinder(rig, balls).places(wand_, limits);
-            const auto best = std::min_element(places.begin(), places.end(), [](const WandPlace& p, const WandPlace& q) {
-                return p.rms() < q.rms(); });
+            const auto best = std::min_element(places.begin(), places.end(), [camera](const WandPlace& p, const WandPlace& q) {
+                return p.seenBy(camera) != q.seenBy(camera) ? p.seenBy(camera) : p.rms() < q.rms(); });
             looked++;
-            if (best == places.end())
+            if (best == places.end() || !best->seenBy(camera))
                 continue;
             misses.push_back(best->rms());
             lengths.push_back(best->length()/wand_.length);
@@ -146,23 +153,58 @@ private:
 
     const BallSightings& seen_;
     const Wand& wand_;
-    std::vector<std::vector<Balls>> clear_;     //!< where a camera sees two balls and no more, if these are enough
+    std::vector<std::vector<Balls>> clear_;     //!< of a camera: where it sees two balls and no more, if these are enough
 };
 
-//! Throws Failure if the images of one camera fit far better so many moments later.
-void requireInStep(const WandSearch& search, const RigModel& rig, const WandLimits& limits, double miss)
+/** Throws Failure if the images of a camera fit far better so many moments later; the one that fits worst is looked at first, as it makes
+others fit badly.
+@param usual of each camera */
+void requireInStep(const WandSearch& search, const RigModel& rig, const WandLimits& limits, const std::vector<WandSearch::Usual>& usual)
 {
     const double APART = 3., FAR_BETTER = 0.2;      // px; of the usual miss
-    for (int c = (int)rig.cameras.size() - 1; c > 0 && !(miss < APART); c--)
-        for (int later = -MOST_LATE; later <= MOST_LATE; later++)
+    const auto missOf = [&](int camera) { return std::isnan(usual[camera].miss) ? INFINITY : usual[camera].miss; };
+    std::vector<int> cameras(usual.size());
+    std::iota(cameras.rbegin(), cameras.rend(), 0);
+    std::stable_sort(cameras.begin(), cameras.end(), [&](int c, int k) { return missOf(c) > missOf(k); });
+    for (const int c : cameras)
+        for (int later = -MOST_LATE; later <= MOST_LATE && missOf(c) >= APART; later++)
         {
             const double other = later ? search.usual(rig, limits, c, later).miss : NaN;
-            if (other == other && (std::isnan(miss) || other < FAR_BETTER*miss))
-                throw Failure(format("the images of camera %d are of other moments than those of camera 1, which fit %d image%s %s: rays "
-                                     "miss each other by %.2g px then, and by %s%.2g px as they are given", c + 1, std::abs(later),
-                                     std::abs(later) == 1 ? "" : "s", later > 0 ? "later" : "earlier", other,
-                                     std::isnan(miss) ? "more than " : "", std::isnan(miss) ? limits.rms : miss));
+            if (other < FAR_BETTER*missOf(c))
+                throw Failure(format("the images of camera %d are of other moments than those of %s, which fit %d image%s %s: rays "
+                                     "miss each other by %.2g px then, and by %s%.2g px as they are given", c + 1,
+                                     usual.size() > 2 ? "the others" : "camera 1", std::abs(later), std::abs(later) == 1 ? "" : "s",
+                                     later > 0 ? "later" : "earlier", other,
+                                     std::isinf(missOf(c)) ? "more than " : "", std::min(missOf(c), limits.rms)));
         }
+}
+
+//! Px, by which rays may miss each other at a start of nominal values.
+double widestMiss(const RigModel& rig)
+{
+    const double WIDE = 0.05;           // of an image
+    int largest = 0;
+    for (const Ptr<refract::RefractiveCamera>& camera : rig.cameras)
+        largest = std::max({largest, camera->imageSize().width, camera->imageSize().height});
+    return WIDE*largest;
+}
+
+void requireUnit(const std::vector<WandSearch::Usual>& usual, double tolerance, const std::string& path, const Wand& wand)
+{
+    for (const WandSearch::Usual& ofCamera : usual)
+        if (std::abs(ofCamera.length - 1) > tolerance)
+            throw Failure(format("with '%s' the balls are %.3g apart (median), and --wand says %g: is that in the unit of T, thickness and "
+                                 "distance there?", path.c_str(), ofCamera.length*wand.length, wand.length));
+}
+
+//! Of those that show a wand: in which a camera sees an end of it.
+int momentsOf(const WandMatches& found, int camera)
+{
+    const std::vector<Point2d>& pixels = found.matches.pixels[camera];
+    int count = 0;
+    for (size_t i = 0; i + 1 < pixels.size(); i += 2)
+        count += !std::isnan(pixels[i].x) || !std::isnan(pixels[i + 1].x);
+    return count;
 }
 
 void requireEnough(const WandMatches& found, const std::string& path)
@@ -172,6 +214,14 @@ void requireEnough(const WandMatches& found, const std::string& path)
         throw Failure(format("only %d of %d moments show a wand, and %d and most are needed: in %d no two cameras see two balls, in %d no "
                              "two fit, in %d several do. Are the images of the cameras of '%s', in their order, and of one moment each?",
                              fit, found.moments, FEWEST, found.unseen, found.unfit, found.unclear, path.c_str()));
+    for (size_t c = 0; c < found.matches.pixels.size(); c++)
+    {
+        const int sees = momentsOf(found, (int)c);
+        if (sees < FEWEST)
+            throw Failure(format("camera %zu sees the wand in %d of %d moments, and %d are needed: does it look where the others do, are "
+                                 "its images of the same moments, and are its values in '%s' about right?", c + 1, sees, fit, FEWEST,
+                                 path.c_str()));
+    }
 }
 
 } // namespace
@@ -221,23 +271,26 @@ BallSightings findBalls(const Calibration& calibration, std::vector<Frames>& cam
 
 WandMatches matchWand(const BundleStart& start, const std::string& path, const BallSightings& seen, const Wand& wand)
 {
-    const double WIDE = 0.05, LEAST[] = {1., 0.3}, TIMES[] = {3., 5.}, LENGTHS[] = {0.3, 0.1};
+    const double LEAST[] = {1., 0.3}, TIMES[] = {3., 5.}, LENGTHS[] = {0.3, 0.1};
     const WandSearch search(seen, wand);
     RigModel rig = start.rig;
-    WandLimits limits = {WIDE*std::max(rig.cameras[0]->imageSize().width, rig.cameras[0]->imageSize().height), INFINITY};
+    WandLimits limits = {widestMiss(rig), INFINITY};
     WandMatches found;
     for (int round : {0, 1})
     {
-        const WandSearch::Usual usual = search.usual(rig, limits);
+        std::vector<WandSearch::Usual> usual;
+        double worst = 0.;
+        for (int c = 0; c < (int)rig.cameras.size(); c++)
+        {
+            usual.push_back(search.usual(rig, limits, c));
+            worst = std::max(worst, std::isnan(usual[c].miss) ? limits.rms : usual[c].miss);
+        }
         if (round == 0)
         {
-            requireInStep(search, rig, limits, usual.miss);
-            if (std::abs(usual.length - 1) > LENGTHS[0])
-                throw Failure(format("with '%s' the balls are %.3g apart (median), and --wand says %g: is that in the unit of T, "
-                                     "thickness and distance there?", path.c_str(), usual.length*wand.length, wand.length));
+            requireInStep(search, rig, limits, usual);
+            requireUnit(usual, LENGTHS[0], path, wand);
         }
-        const double miss = std::isnan(usual.miss) ? limits.rms : usual.miss;
-        limits = {std::min(std::max(LEAST[round], TIMES[round]*miss), limits.rms), LENGTHS[round]};
+        limits = {std::min(std::max(LEAST[round], TIMES[round]*worst), limits.rms), LENGTHS[round]};
         found = search.matches(rig, limits);
         requireEnough(found, path);
         if (round == 0)
