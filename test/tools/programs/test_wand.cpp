@@ -22,6 +22,7 @@ struct Scene
     bool lamps = true;
     int hidden = 0, mirrored = 0;           //!< of so many moments one has a ball hidden from camera 2, a third ball in camera 1
     int late = 0;                           //!< images, of the last camera
+    int flashed = 0;                        //!< of so many moments one has a bright bar; images have 16 bits then
 };
 
 Mat pictureOf(Wand& wand, int camera, int moment, const Scene& scene, Mat image)
@@ -53,6 +54,12 @@ void writePictures(const TemporaryFolder& f, Wand& wand, const Scene& scene)
             if (scene.mirrored && m % scene.mirrored == 0 && c == 0)
                 circle(image, Point(500 + 7*m, 300 + 3*m), 8, Scalar(120), -1, LINE_AA);
             image = pictureOf(wand, c, isLast ? (m + moments - scene.late) % moments : m, scene, image);
+            if (scene.flashed)
+            {
+                if (m % scene.flashed == 0)
+                    rectangle(image, Rect(100, 900, 400, 8), Scalar(255), -1);
+                image.convertTo(image, CV_16U, 200);
+            }
             imwrite(f / format("cam%d/m%03d.png", c + 1, m), image, fast);
         }
     }
@@ -188,6 +195,26 @@ TEST_CASE("Of a wand's images what is hidden, mirrored or not clear is left out 
     CHECK(result.out.substr(0, result.out.find("wand:")) == again.out);
 }
 
+TEST_CASE("A flash leaves 16-bit images of a wand as they are", "[tools][bundle][wand]")
+{
+    Wand wand(4575, 2, 16);
+    const TemporaryFolder f;
+    wand.write(f);
+    Scene scene = {8, 8, 0.8, 1, 60, 0, 20, 40, false};
+    scene.flashed = 3;
+    writePictures(f, wand, scene);
+    const ToolResult result = bundleImages(f, 2);
+    CAPTURE(scenes::seed(), result.out, result.err);
+    REQUIRE(result.code == 0);
+    const std::vector<Row> rows = rowsOf(f / "points.csv");
+    int flashed = 0;
+    for (const Row& row : rows)
+        flashed += std::stoi(row.image.substr(1)) % scene.flashed == 0;
+    CHECK(flashed >= 2*5);              // of six moments
+    Ratio ratio;
+    CHECK(pixelError(wand, rows, ratio) < 0.06);
+}
+
 TEST_CASE("refract_bundle says what is wrong with images of a wand", "[tools][bundle][wand]")
 {
     Wand wand(4580, 2, 16);
@@ -246,6 +273,12 @@ TEST_CASE("refract_bundle names the one of three cameras whose images of a wand 
     CAPTURE(blind.out, blind.err);
     CHECK(blind.code == 1);
     CHECK(mentions(blind.err, "camera 3 sees the wand in 0 of 1"));
+    for (int m = 3; m < 16; m++)
+        std::filesystem::remove(f / format("cam3/m%03d.png", m));
+    const ToolResult few = bundleImages(f, 3);
+    CAPTURE(few.out, few.err);
+    CHECK(few.code == 1);
+    CHECK(mentions(few.err, "camera 3 has images of 3 moments"));
 }
 
 TEST_CASE("The images of a wand of the guide are made anew", "[.wand-data]")

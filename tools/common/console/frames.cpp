@@ -224,19 +224,25 @@ FramePairs pairsOf(const Frames& first, const Frames& second)
     return result;
 }
 
+double whiteOf(const cv::Mat& image)
+{
+    double largest = 255;
+    if (image.depth() != CV_8U)
+        cv::minMaxLoc(image.reshape(1), nullptr, &largest);
+    return largest;
+}
+
+void makeEightBit(cv::Mat& image, double white)
+{
+    if (image.depth() != CV_8U)
+        image.convertTo(image, CV_8U, white > 0 ? 255./white : 1.);
+}
+
 void makeEightBit(cv::Mat& image1, cv::Mat& image2)
 {
-    double brightest = 0;
-    for (const cv::Mat& image : {image1, image2})
-    {
-        double largest = 255;
-        if (image.depth() != CV_8U)
-            cv::minMaxLoc(image.reshape(1), nullptr, &largest);
-        brightest = std::max(brightest, largest);
-    }
-    for (cv::Mat* image : {&image1, &image2})
-        if (image->depth() != CV_8U)
-            image->convertTo(*image, CV_8U, brightest > 0 ? 255./brightest : 1.);
+    const double white = std::max(whiteOf(image1), whiteOf(image2));
+    makeEightBit(image1, white);
+    makeEightBit(image2, white);
 }
 
 } // namespace tools

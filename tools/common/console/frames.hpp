@@ -72,6 +72,12 @@ struct FramePairs
 //! The moments of two cameras that have both; throws Failure also if there are none.
 FramePairs pairsOf(const Frames& first, const Frames& second);
 
+//! The largest value in an image; of one of 8 bits 255.
+double whiteOf(const cv::Mat& image);
+
+//! 8 bits; more bits are made brighter or darker so that one value, and what is above it, is 255.
+void makeEightBit(cv::Mat& image, double white);
+
 //! 8 bits each, as matchers want them; more bits of both are made brighter or darker by one factor.
 void makeEightBit(cv::Mat& image1, cv::Mat& image2);
 

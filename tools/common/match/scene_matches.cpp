@@ -23,14 +23,6 @@ namespace {
 const int FEWEST = 20;                  // matches, to tell good ones from others
 const double NaN = std::numeric_limits<double>::quiet_NaN();
 
-Mat greyFrame(Frames& frames, int i, const Calibration& calibration, int camera)
-{
-    Mat image = frames.read(i), same = image;
-    requireSize(image, frames.name(i), calibration.cameras[camera].camera->imageSize());
-    makeEightBit(image, same);
-    return greyOf(image, calibration.channel);
-}
-
 ScaledMatches matchesOfChains(const std::string& moment, const std::vector<Features>& features, const std::vector<Chain>& chains)
 {
     ScaledMatches result;
@@ -124,6 +116,14 @@ std::vector<Frames> framesOf(const std::vector<std::string>& sources, const Cali
     for (const std::string& source : sources)
         frames.emplace_back(source);
     return frames;
+}
+
+Mat greyFrame(Frames& frames, int i, const Calibration& calibration, int camera, double white)
+{
+    Mat image = frames.read(i);
+    requireSize(image, frames.name(i), calibration.cameras[camera].camera->imageSize());
+    makeEightBit(image, white > 0. ? white : whiteOf(image));
+    return greyOf(image, calibration.channel);
 }
 
 std::vector<Mat> imagesOf(const Moment& moment, const Calibration& calibration, std::vector<Frames>& cameras)

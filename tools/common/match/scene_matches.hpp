@@ -20,6 +20,9 @@ std::vector<Frames> framesOf(const std::vector<std::string>& sources, const Cali
 //! That two cameras have images of. Throws Failure if there are none.
 std::vector<Moment> sharedMoments(const std::vector<Frames>& cameras);
 
+//! What a camera saw, 8-bit grey. @param white value that becomes 255, of images with more bits; 0: their largest, of each its own
+cv::Mat greyFrame(Frames& frames, int i, const Calibration& calibration, int camera, double white = 0.);
+
 //! What all cameras saw at a moment, 8-bit grey; empty: nothing.
 std::vector<cv::Mat> imagesOf(const Moment& moment, const Calibration& calibration, std::vector<Frames>& cameras);
 

@@ -30,23 +30,34 @@ double medianOf(std::vector<double> values)
     return values[values.size()/2];
 }
 
-//! Per camera: moments spread over all, as many as tell what stands still.
-std::vector<Mat> backgroundsOf(const Calibration& calibration, std::vector<Frames>& cameras, const std::vector<Moment>& moments)
+/* What a camera shows that does not move, and what its images have in common. */
+struct StillCamera
 {
-    const int ENOUGH = 15;
-    std::vector<std::vector<Mat>> some(cameras.size());
-    const int step = std::max(1, (int)moments.size()/ENOUGH);
-    for (int m = 0; m < (int)moments.size(); m += step)
+    Mat background;
+    double white;               //!< of more bits, one for all images: a flash must not make the rest darker
+};
+
+//! By images spread over all, as many as tell what stands still.
+StillCamera stillCameraOf(Frames& frames, const Calibration& calibration, int camera)
+{
+    const int ENOUGH = 15, FEWEST_STILL = 5;
+    if (frames.size() < FEWEST_STILL)
+        throw Failure(format("camera %d has images of %d moment%s; what stands still, which is no wand, is told from %d or more",
+                             camera + 1, frames.size(), frames.size() == 1 ? "" : "s", FEWEST_STILL));
+    const int count = std::min(frames.size(), ENOUGH);
+    const auto frameOf = [&](int i) { return (int)((int64)i*frames.size()/count); };
+    double white = 0.;
+    for (int i = 0; i < count; i++)
     {
-        const std::vector<Mat> images = imagesOf(moments[m], calibration, cameras);
-        for (size_t c = 0; c < cameras.size(); c++)
-            if (!images[c].empty())
-                some[c].push_back(images[c]);
+        const Mat image = frames.read(frameOf(i));
+        if (image.depth() == CV_8U)
+            break;
+        white = std::max(white, whiteOf(image));
     }
-    std::vector<Mat> backgrounds;
-    for (const std::vector<Mat>& images : some)
-        backgrounds.push_back(images.empty() ? Mat() : stillBackground(images));
-    return backgrounds;
+    std::vector<Mat> images;
+    for (int i = 0; i < count; i++)
+        images.push_back(greyFrame(frames, frameOf(i), calibration, camera, white));
+    return {stillBackground(images), white};
 }
 
 //! Whether two cameras see two balls or more.
@@ -245,19 +256,26 @@ BallSightings findBalls(const Calibration& calibration, std::vector<Frames>& cam
     if ((int)moments.size() < FEWEST)
         throw Failure(format("--wand: two cameras have images of %zu moments, and %d are needed, some dozens better", moments.size(),
                              FEWEST));
-    const std::vector<Mat> backgrounds = backgroundsOf(calibration, cameras, moments);
+    std::vector<StillCamera> still;
+    for (int c = 0; c < (int)cameras.size(); c++)
+        still.push_back(stillCameraOf(cameras[c], calibration, c));
     BallSightings seen[2];              // bright, dark
     Progress progress("looking for balls", (int)moments.size(), quiet);
     for (const Moment& moment : moments)
     {
         progress.at(moment.stem);
-        const std::vector<Mat> images = imagesOf(moment, calibration, cameras);
-        for (int dark : {0, 1})
+        for (BallSightings& ofKind : seen)
         {
-            seen[dark].moments.push_back(moment.stem);
-            seen[dark].balls.emplace_back();
-            for (size_t c = 0; c < images.size(); c++)
-                seen[dark].balls.back().push_back(images[c].empty() ? Balls() : ballsIn(images[c], backgrounds[c], !dark));
+            ofKind.moments.push_back(moment.stem);
+            ofKind.balls.emplace_back(cameras.size());
+        }
+        for (int c = 0; c < (int)cameras.size(); c++)
+        {
+            if (moment.frames[c] < 0)
+                continue;
+            const Mat image = greyFrame(cameras[c], moment.frames[c], calibration, c, still[c].white);
+            for (int dark : {0, 1})
+                seen[dark].balls.back()[c] = ballsIn(image, still[c].background, !dark);
         }
         progress.step();
     }
