@@ -188,8 +188,6 @@ struct Observations
 
 Observations readTables(const Options& o, const Calibration& file)
 {
-    if (!o.images.empty())
-        throw Failure("'" + o.images[0] + "' is one word too many: images are for --wand=LENGTH, which says what they show");
     if (o.points.empty())
         throw Failure("give --points=matches.csv, what the cameras saw, --wand=LENGTH and images, or --colmap=FOLDER of a rig that moved");
     Observations seen;
@@ -262,6 +260,12 @@ int bundleSurvey(const Options& options, const Calibration& file, const Command&
     return ended(options, result.adjustment.bundle, result.findings);
 }
 
+void refuseOtherImages(const Options& o)
+{
+    if (!o.images.empty() && o.wand.empty())
+        throw Failure("'" + o.images[0] + "' is one word too many: images are for --wand=LENGTH, which says what they show");
+}
+
 //! Before any work.
 void refuseOverwriting(const Options& o, const std::string& settings)
 {
@@ -286,6 +290,7 @@ int refract_bundle_main(int argc, char** argv)
 {
     return runTool(argc, argv, MANUAL, [](Command& command) {
         const Options options = parsed(command, addOptions);
+        refuseOtherImages(options);
         refuseOverwriting(options, command.settings());
         const Calibration file = readCalibration(options.start);
         warnOfContradictions(file, options.start, command);

@@ -245,6 +245,7 @@ TEST_CASE("refract_bundle says what is wrong with images of a wand", "[tools][bu
     CAPTURE(exchanged.out, exchanged.err);
     CHECK(exchanged.code == 1);
     CHECK(mentions(runTool(start + images).err, "images are for --wand=LENGTH"));
+    CHECK(mentions(runTool(start + " --colmap=" + f / "sparse" + images).err, "images are for --wand=LENGTH"));
     CHECK(mentions(runTool(start + " --wand=200").err, "IMAGES"));
     CHECK(mentions(runTool(start + " --wand=200" + imagesOf(f, 1)).err, "has 2 cameras, and images of 1 are given"));
     CHECK(mentions(runTool(start + " --wand=200 '" + f / "cam1/m00[0-2].png' '" + f / "cam2/m00[0-2].png'").err, "and 8 are needed"));
