@@ -183,7 +183,8 @@ struct Observations
 {
     Matches matches;
     GivenLengths lengths;
-    std::string said;               //!< of how it was found; empty: it was given
+    std::string said;               //!< of how it was found, a line; empty: it was given
+    Json wand;                      //!< the same in numbers
 };
 
 Observations readTables(const Options& o, const Calibration& file)
@@ -202,7 +203,7 @@ Observations findWand(const Options& o, const Calibration& file, const BundleSta
     const Wand wand = parseWand(o.wand);
     std::vector<Frames> frames = framesOf(o.images, file, o.start);
     const WandMatches found = matchWand(start, o.start, findBalls(file, frames, quiet), wand);
-    return {found.matches, found.lengths, textOf(found)};
+    return {found.matches, found.lengths, textOf(found) + "\n", jsonOf(found)};
 }
 
 int bundleMatches(const Options& options, const Calibration& file, const Command& command)
@@ -211,6 +212,8 @@ int bundleMatches(const Options& options, const Calibration& file, const Command
     const BundleStart start = startWith(options, options.bundle, file);
     if (!options.wand.empty())
         seen = findWand(options, file, start, command.quiet());
+    if (!command.quiet())
+        std::cout << seen.said << std::flush;       // what follows may fail
     const Matches& matches = seen.matches;
     const GivenLengths& lengths = seen.lengths;
     requireScale(start, options.start, matches, lengths);
@@ -224,13 +227,15 @@ int bundleMatches(const Options& options, const Calibration& file, const Command
     if (!options.pointsOut.empty())
         writeText(options.pointsOut, pointsCsv(matches, adjustment, stemOf(options.points)));
     if (!options.summary.empty())
-        writeText(options.summary, bundleJson(matches, adjustment, findings, command.line(), unit));
+    {
+        Json json = bundleJson(matches, adjustment, findings, command.line(), unit);
+        if (!options.wand.empty())
+            json.set("wand", seen.wand);
+        writeText(options.summary, json.text(2) + "\n");
+    }
     writeCalibration(options.out, resultOf(options, adjustment, findings, file, unit, command));
     if (!command.quiet())
-    {
         printBundle(std::cout, matches, adjustment, findings, unit);
-        std::cout << seen.said;
-    }
     return ended(options, adjustment, findings);
 }
 

@@ -4,6 +4,7 @@
 // refract_bundle with images of a wand with two balls, as a user gives them.
 #include "../target/drawn_balls.hpp"
 #include "wand_scene.hpp"
+#include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <filesystem>
 
@@ -181,6 +182,11 @@ TEST_CASE("Of a wand's images what is hidden, mirrored or not clear is left out 
     REQUIRE(result.code == 0);
     CHECK(mentions(result.out, " of 24 moments; left out: "));
     CHECK(mentions(result.out, "where two cameras do not see two balls"));
+    const nlohmann::json counts = nlohmann::json::parse(readFile(f / "summary.json"))["wand"];
+    CHECK(counts["moments"] == 24);
+    CHECK(counts["moments_unseen"] >= 4);
+    CHECK(counts["moments_used"].get<int>() + counts["moments_unseen"].get<int>() + counts["moments_unfit"].get<int>()
+          + counts["moments_unclear"].get<int>() == 24);
     std::vector<Row> rows = rowsOf(f / "points.csv");
     CHECK(rows.size() > 2*12);
     Ratio ratio;
@@ -192,7 +198,7 @@ TEST_CASE("Of a wand's images what is hidden, mirrored or not clear is left out 
                                      + f / "again.yml");
     CAPTURE(again.out, again.err);
     CHECK(again.code == 0);
-    CHECK(result.out.substr(0, result.out.find("wand:")) == again.out);
+    CHECK(result.out.substr(result.out.find('\n') + 1) == again.out);
 }
 
 TEST_CASE("A flash leaves 16-bit images of a wand as they are", "[tools][bundle][wand]")
@@ -280,6 +286,18 @@ TEST_CASE("refract_bundle names the one of three cameras whose images of a wand 
     CAPTURE(few.out, few.err);
     CHECK(few.code == 1);
     CHECK(mentions(few.err, "camera 3 has images of 3 moments"));
+}
+
+TEST_CASE("Where images of a wand leave a fit undetermined, what was seen of it is said", "[tools][bundle][wand]")
+{
+    const std::string folder = paths::bundled() + "/balls";
+    const TemporaryFolder f;
+    const ToolResult result = runTool("refract_bundle " + folder + "/start.yml --wand=200 '" + folder + "/left/*.jpg' '" + folder
+                                      + "/right/*.jpg' --free=normal,extrinsics,distance,thickness,index --out=" + f / "calib.yml");
+    CAPTURE(result.out, result.err);
+    CHECK(result.code == 1);
+    CHECK(mentions(result.err, "do not determine"));
+    CHECK(mentions(result.err, "; wand: 23 of 30 moments; left out: 7 where"));
 }
 
 TEST_CASE("The images of a wand of the guide are made anew", "[.wand-data]")

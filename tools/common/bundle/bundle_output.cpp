@@ -176,12 +176,12 @@ Json adjustmentJson(const BundleAdjustment& adjustment, const BundleFindings& fi
         {"lenses_and_places", parametersOf(estimatedRigParameters(adjustment.fit))}, {"command", command}};
 }
 
-std::string bundleJson(const Matches& matches, const BundleAdjustment& adjustment, const BundleFindings& findings,
-                       const std::string& command, const std::string& unit)
+Json bundleJson(const Matches& matches, const BundleAdjustment& adjustment, const BundleFindings& findings, const std::string& command,
+                const std::string& unit)
 {
     Json json = adjustmentJson(adjustment, findings, command, unit);
     json.set("left_out", namesOf(matches, adjustment.outliers()));
-    return json.text(2) + "\n";
+    return json;
 }
 
 void printCorrections(std::ostream& out, const BundleFindings& findings, const std::string& unit)

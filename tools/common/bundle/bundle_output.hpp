@@ -15,8 +15,8 @@ namespace tools {
 std::string pointsCsv(const Matches& matches, const BundleAdjustment& adjustment, const std::string& image);
 
 //! All that the terminal says, and more of it.
-std::string bundleJson(const Matches& matches, const BundleAdjustment& adjustment, const BundleFindings& findings,
-                       const std::string& command, const std::string& unit);
+Json bundleJson(const Matches& matches, const BundleAdjustment& adjustment, const BundleFindings& findings, const std::string& command,
+                const std::string& unit);
 
 //! What of it is of any rig, whatever its points are of.
 Json adjustmentJson(const BundleAdjustment& adjustment, const BundleFindings& findings, const std::string& command,

@@ -235,6 +235,18 @@ void requireEnough(const WandMatches& found, const std::string& path)
     }
 }
 
+RigModel fittedTo(const BundleStart& start, const WandMatches& found)
+{
+    try
+    {
+        return adjustBundle(start, found.matches, found.lengths, true).fit.rig;
+    }
+    catch (const Failure& failure)
+    {
+        throw Failure(failure.what() + ("; " + textOf(found)));
+    }
+}
+
 } // namespace
 
 Wand parseWand(const std::string& text)
@@ -312,7 +324,7 @@ WandMatches matchWand(const BundleStart& start, const std::string& path, const B
         found = search.matches(rig, limits);
         requireEnough(found, path);
         if (round == 0)
-            rig = adjustBundle(start, found.matches, found.lengths, true).fit.rig;
+            rig = fittedTo(start, found);
     }
     return found;
 }
@@ -324,7 +336,13 @@ std::string textOf(const WandMatches& found)
     add(found.unseen, "where two cameras do not see two balls");
     add(found.unfit, "where no two fit");
     add(found.unclear, "where several do");
-    return text + (out.empty() ? "" : "; left out: " + out) + "\n";
+    return text + (out.empty() ? "" : "; left out: " + out);
+}
+
+Json jsonOf(const WandMatches& found)
+{
+    return {{"moments", found.moments}, {"moments_used", found.matches.names.size()/2}, {"moments_unseen", found.unseen},
+            {"moments_unfit", found.unfit}, {"moments_unclear", found.unclear}};
 }
 
 } // namespace tools

@@ -6,6 +6,7 @@
 
 #include "bundle/bundle_start.hpp"
 #include "console/frames.hpp"
+#include "console/json.hpp"
 #include "match/wand_finder.hpp"
 
 /* A wand with a ball at each end that is waved before cameras which do not move: from images to what a bundle adjustment takes. */
@@ -34,12 +35,15 @@ struct WandMatches
 
 /** Which of the balls are the ends of the wand: those whose rays meet, and that are as far from each other as it is long. A start of
 nominal values lets rays miss each other by many pixels; so what is clear tells the rig first, and this what the others are. Throws
-Failure where hardly any moment shows a wand, with what is known of why.
+Failure where hardly any moment shows a wand, with what is known of why, or where those that do let nothing be fitted, with their line.
 @param path of the start, for the text */
 WandMatches matchWand(const BundleStart& start, const std::string& path, const BallSightings& seen, const Wand& wand);
 
-//! "wand: 78 of 80 moments; left out: 1 where no two fit, 1 where several do", a line.
+//! "wand: 78 of 80 moments; left out: 1 where no two fit, 1 where several do".
 std::string textOf(const WandMatches& found);
+
+//! Its numbers.
+Json jsonOf(const WandMatches& found);
 
 } // namespace tools
 
