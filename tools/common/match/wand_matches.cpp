@@ -178,16 +178,22 @@ void requireInStep(const WandSearch& search, const RigModel& rig, const WandLimi
     std::iota(cameras.rbegin(), cameras.rend(), 0);
     std::stable_sort(cameras.begin(), cameras.end(), [&](int c, int k) { return missOf(c) > missOf(k); });
     for (const int c : cameras)
+    {
+        double least = FAR_BETTER*missOf(c);
+        int best = 0;
         for (int later = -MOST_LATE; later <= MOST_LATE && missOf(c) >= APART; later++)
         {
-            const double other = later ? search.usual(rig, limits, c, later).miss : NaN;
-            if (other < FAR_BETTER*missOf(c))
-                throw Failure(format("the images of camera %d are of other moments than those of %s, which fit %d image%s %s: rays "
-                                     "miss each other by %.2g px then, and by %s%.2g px as they are given", c + 1,
-                                     usual.size() > 2 ? "the others" : "camera 1", std::abs(later), std::abs(later) == 1 ? "" : "s",
-                                     later > 0 ? "later" : "earlier", other,
-                                     std::isinf(missOf(c)) ? "more than " : "", std::min(missOf(c), limits.rms)));
+            const double miss = later ? search.usual(rig, limits, c, later).miss : NaN;
+            if (miss < least)
+                least = miss, best = later;
         }
+        if (best)
+            throw Failure(format("the images of camera %d are of other moments than those of %s, which fit %d image%s %s: rays "
+                                 "miss each other by %.2g px then, and by %s%.2g px as they are given", c + 1,
+                                 usual.size() > 2 ? "the others" : "camera 1", std::abs(best), std::abs(best) == 1 ? "" : "s",
+                                 best > 0 ? "later" : "earlier", least, std::isinf(missOf(c)) ? "more than " : "",
+                                 std::min(missOf(c), limits.rms)));
+    }
 }
 
 //! Px, by which rays may miss each other at a start of nominal values.
