@@ -130,8 +130,9 @@ TEST_CASE("Views and points that turn together keep their places to each other",
             continue;
         Eigen::VectorXd after = problem->scene().clusters()[cluster].values;
         const Vec3d point(after.data());
-        motion.bendPoints(*problem, cluster, after);
-        const Vec3d moved = Vec3d(after.data()) + omega.cross(point - about);
+        const Vec3d change = omega.cross(point - about);
+        motion.movePoints(*problem, cluster, Eigen::Map<const Eigen::Vector3d>(change.val), after);
+        const Vec3d moved(after.data());
         for (int view = 0; view < VIEWS; view++)
             CHECK(norm(seenBy(poses[view], moved) - seenBy(from[view], point)) < 1e-4);
     }

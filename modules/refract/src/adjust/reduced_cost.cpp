@@ -119,8 +119,9 @@ void ReducedCost::predictInner()
             own[k] = step[block.columns[k]];
         const VectorXd change = timesVector(block.byOuter, own);
         if (anchor_->motion)
-            anchor_->motion->bendPoints(problem_, i, inner.segment(at, size));
-        inner.segment(at, size) += change;
+            anchor_->motion->movePoints(problem_, i, change, inner.segment(at, size));
+        else
+            inner.segment(at, size) += change;
         at += size;
     }
     setInnerValues(problem_, inner);

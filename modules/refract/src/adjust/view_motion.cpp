@@ -57,12 +57,7 @@ std::vector<Vec3d> middlesOfViews(const Problem& problem)
     return middles;
 }
 
-Matx33d cross(const Vec3d& v)
-{
-    return Matx33d(0, -v[2], v[1], v[2], 0, -v[0], -v[1], v[0], 0);
-}
-
-//! Of the matrix nearest to what cross() gives.
+//! v of the matrix of v x.
 Vec3d fromCross(const Matx33d& m)
 {
     return 0.5*Vec3d(m(2, 1) - m(1, 2), m(0, 2) - m(2, 0), m(1, 0) - m(0, 1));
@@ -121,7 +116,8 @@ std::vector<ViewEdge> treeOfViews(const Problem& problem)
     return tree;
 }
 
-ViewMotion::ViewMotion(const Problem& problem, const std::vector<ViewEdge>& tree) : tree_(tree), sceneScale_(problem.sceneScale())
+ViewMotion::ViewMotion(const Problem& problem, const std::vector<ViewEdge>& tree)
+    : tree_(tree), isRoot_(problem.viewCount(), true), sceneScale_(problem.sceneScale())
 {
     const std::vector<Vec3d> middles = middlesOfViews(problem);
     for (int view = 0; view < problem.viewCount(); view++)
@@ -132,76 +128,89 @@ ViewMotion::ViewMotion(const Problem& problem, const std::vector<ViewEdge>& tree
         for (int k = 0; k < 3; k++)
             for (int i = 0; i < 3; i++)
                 turnByRvec(i, k) = fromCross(rotation.R.t()*rotation.dR[k])[i];
-        views_.push_back(View{ rotation, Vec3d(pose), Vec3d(pose + 3), turnByRvec, sceneScale_*middles[view], rotation.R,
-                               Matx33d::zeros(), Vec3d() });
+        const Vec3d middle = sceneScale_*middles[view];
+        views_.push_back(View{ rotation, Vec3d(pose), Vec3d(pose + 3), turnByRvec, middle, Vec3d(), Vec3d(), Matx33d::eye(), middle });
     }
+    for (const ViewEdge& edge : tree_)
+        isRoot_[edge.to] = false;
 }
 
-//! @param turns R' = R exp(turn)
-void ViewMotion::turn(const std::vector<Vec3d>& turns)
+std::vector<Vector6> ViewMotion::posesAfter(const std::vector<Vector6>& steps)
 {
     for (size_t i = 0; i < views_.size(); i++)
     {
-        const Matx33d turned = rotationMatrix(turns[i]);
-        views_[i].after = views_[i].rotation.R*turned;
-        views_[i].bend = turned.t() - Matx33d::eye() + cross(turns[i]);     // what is seen turns the other way
+        View& view = views_[i];
+        const Vec3d change(steps[i].data()), shift(steps[i].data() + 3);
+        view.turn = -(view.turnByRvec*change);      // what is seen turns the other way
+        view.way = -(view.rotation.R.t()*(shift + view.rotation.derivativeOf(view.middle)*change));
+        view.turned = rotationMatrix(view.turn);
+        view.moved = view.middle + view.way;
     }
     for (const ViewEdge& edge : tree_)
     {
         const View& from = views_[edge.from];
         View& to = views_[edge.to];
-        to.excess = from.excess + 0.5*(from.bend + to.bend)*(to.middle - from.middle);
+        const Vec3d between = to.middle - from.middle;
+        to.turned = from.turned*rotationMatrix(to.turn - from.turn);
+        to.moved = from.moved + 0.5*(from.turned + to.turned)*(between + to.way - from.way - 0.5*(from.turn + to.turn).cross(between));
     }
-}
-
-std::vector<Vector6> ViewMotion::posesAfter(const std::vector<Vector6>& steps)
-{
-    std::vector<Vec3d> turns;
-    for (size_t i = 0; i < views_.size(); i++)
-        turns.push_back(views_[i].turnByRvec*Vec3d(steps[i].data()));
-    turn(turns);
     std::vector<Vector6> poses;
     for (size_t i = 0; i < views_.size(); i++)
     {
         const View& view = views_[i];
-        const Vec3d change(steps[i].data()), shift(steps[i].data() + 3);
-        const Vec3d way = view.excess - view.rotation.R.t()*(shift + view.rotation.derivativeOf(view.middle)*change);
-        poses.push_back(joined(nearestRotationVector(view.after, view.rvec + change),
-                               view.rotation.R*view.middle + view.tvec - view.after*(view.middle + way)));
+        const Matx33d R = view.rotation.R*view.turned.t();
+        poses.push_back(joined(nearestRotationVector(R, view.rvec + Vec3d(steps[i].data())),
+                               view.rotation.R*view.middle + view.tvec - R*view.moved));
     }
     return poses;
 }
 
 std::vector<Vector6> ViewMotion::stepsTo(const std::vector<Vector6>& poses)
 {
-    std::vector<Vec3d> turns;
-    for (size_t i = 0; i < views_.size(); i++)
-        turns.push_back(rotationVector(views_[i].rotation.R.t()*rotationMatrix(Vec3d(poses[i].data()))));
-    turn(turns);
-    std::vector<Vector6> steps;
     for (size_t i = 0; i < views_.size(); i++)
     {
-        const View& view = views_[i];
-        const Vec3d change = view.turnByRvec.solve(turns[i], DECOMP_SVD), tvec(poses[i].data() + 3);
-        const Vec3d way = view.after.t()*(view.rotation.R*view.middle + view.tvec - tvec) - view.middle - view.excess;
-        steps.push_back(joined(change, -(view.rotation.R*way) - view.rotation.derivativeOf(view.middle)*change));
+        View& view = views_[i];
+        const Matx33d R = rotationMatrix(Vec3d(poses[i].data()));
+        view.turned = R.t()*view.rotation.R;
+        view.moved = R.t()*(view.rotation.R*view.middle + view.tvec - Vec3d(poses[i].data() + 3));
+        if (!isRoot_[i])
+            continue;
+        view.turn = rotationVector(view.turned);
+        view.way = view.moved - view.middle;
+    }
+    for (const ViewEdge& edge : tree_)
+    {
+        const View& from = views_[edge.from];
+        View& to = views_[edge.to];
+        const Vec3d between = to.middle - from.middle;
+        to.turn = from.turn + rotationVector(from.turned.t()*to.turned);
+        to.way = from.way + Vec3d((0.5*(from.turned + to.turned)).solve(to.moved - from.moved, DECOMP_LU)) - between
+                 + 0.5*(from.turn + to.turn).cross(between);
+    }
+    std::vector<Vector6> steps;
+    for (const View& view : views_)
+    {
+        const Vec3d change = view.turnByRvec.solve(-view.turn, DECOMP_SVD);
+        steps.push_back(joined(change, -(view.rotation.R*view.way) - view.rotation.derivativeOf(view.middle)*change));
     }
     return steps;
 }
 
-void ViewMotion::bendPoints(const Problem& problem, int cluster, Eigen::Ref<Eigen::VectorXd> points) const
+void ViewMotion::movePoints(const Problem& problem, int cluster, const Eigen::VectorXd& change, Eigen::Ref<Eigen::VectorXd> points) const
 {
-    std::vector<bool> isBent(points.size()/3, false);
+    const Eigen::VectorXd before = points;
+    points += change;
     for (const Observation& o : problem.observationsOf(cluster))
     {
         const Image& image = problem.images()[o.image];
-        const int place = problem.scene().placeInCluster(image.points.index[o.row]);
-        if (isBent[place] || !(image.rootWeights[o.row] > 0))
+        const int at = 3*problem.scene().placeInCluster(image.points.index[o.row]);
+        if (!(image.rootWeights[o.row] > 0))
             continue;
         const View& view = views_[image.view];
-        const Vec3d change = (view.excess + view.bend*(sceneScale_*Vec3d(&points[3*place]) - view.middle))/sceneScale_;
-        points.segment<3>(3*place) += Eigen::Map<const Eigen::Vector3d>(change.val);
-        isBent[place] = true;
+        const Vec3d arm = sceneScale_*Vec3d(&before[at]) - view.middle;
+        const Vec3d own = sceneScale_*Vec3d(&change[at]) - view.way - view.turn.cross(arm);
+        const Vec3d moved = (view.moved + view.turned*(arm + own))/sceneScale_;
+        points.segment<3>(at) = Eigen::Map<const Eigen::Vector3d>(moved.val);
     }
 }
 

@@ -24,9 +24,10 @@ std::vector<ViewEdge> treeOfViews(const Problem& problem);
 
 /** How the views of a scene move by a step that is not small: the retraction of their poses. To first order it is a step of rvec and t.
 
-A view turns about the middle of what it sees, so that one that is hardly tied to its points goes round them. Middles keep their places
-to each other, turned by half of what either view turns: where a long strip bends by degrees, base lines and points bend with it, while
-straight lines of the poses would stretch what is between them. Poses and steps: rvec, t; one a view. */
+A view turns about the middle of what it sees, so that one that is hardly tied to its points goes round them. What a step changes between
+two views is small, and is made in their own frame as it has turned: from view to view along a tree. So where a long strip bends by
+degrees, all that is near to each other keeps its places; straight lines of the poses would tear it apart. Poses and steps: rvec, t; one
+a view. */
 class ViewMotion
 {
 public:
@@ -35,8 +36,8 @@ public:
 
     std::vector<Vector6> posesAfter(const std::vector<Vector6>& steps);
     std::vector<Vector6> stepsTo(const std::vector<Vector6>& poses);
-    //! Takes the points of a cluster along with a view that sees each, by what of the last motion is above first order.
-    void bendPoints(const Problem& problem, int cluster, Eigen::Ref<Eigen::VectorXd> points) const;
+    //! Moves the points of a cluster in the frame of a view that sees each, as the last motion turned it. @param change to first order
+    void movePoints(const Problem& problem, int cluster, const Eigen::VectorXd& change, Eigen::Ref<Eigen::VectorXd> points) const;
 
 private:
     struct View
@@ -45,12 +46,13 @@ private:
         Vec3d rvec, tvec;
         Matx33d turnByRvec;     //!< R(rvec + d) = R(rvec) exp(turnByRvec d), to first order
         Vec3d middle;           //!< of the points that it sees
-        Matx33d after;          //!< R' of the last motion
-        Matx33d bend;           //!< of its rotation about the middle, above first order
-        Vec3d excess;           //!< of the middle's way, above first order
+        // The last motion
+        Vec3d turn, way;        //!< of the scene about it (a rotation vector) and of the middle, to first order
+        Matx33d turned;         //!< of the scene
+        Vec3d moved;            //!< the middle
     };
-    void turn(const std::vector<Vec3d>& turns);
     std::vector<ViewEdge> tree_;
+    std::vector<bool> isRoot_;
     std::vector<View> views_;
     double sceneScale_;         //!< scene's units -> those of t, of middles and ways
 };
