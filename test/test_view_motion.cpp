@@ -138,36 +138,39 @@ TEST_CASE("Views and points that turn together keep their places to each other",
     }
 }
 
-TEST_CASE("A row of views that bends keeps its base lines", "[view-motion]")
+TEST_CASE("A row of views that bends and twists keeps what is between its views", "[view-motion]")
 {
     Random random(93);
     CAPTURE(seed());
     const std::unique_ptr<Problem> problem = makeRow(random, 0, 0);
-    const Vec3d turn(0, 0.5/VIEWS, 0);          // rad, of each view to the one before, in the scene
-    std::vector<Vec3d> middles;
+    std::vector<Vec3d> middles, turns;          // of the scene, rad
     std::vector<Vector6> steps;
     Vec3d way;
     for (int view = 0; view < VIEWS; view++)
     {
+        const double part = (double)view/VIEWS;
         middles.push_back(middleOf(*problem, view));
+        turns.push_back(Vec3d(0.6*part*part, 0.5*part, 0.2*std::sin(3*part)));
         if (view > 0)
-            way += (view - 0.5)*turn.cross(middles[view] - middles[view - 1]);
-        const Vec3d change = -view*turn;        // rvec is 0
-        steps.push_back(joined(change, -way - change.cross(middles[view])));
+            way += 0.5*(turns[view] + turns[view - 1]).cross(middles[view] - middles[view - 1]);
+        steps.push_back(joined(-turns[view], -way + turns[view].cross(middles[view])));      // rvec is 0
     }
     ViewMotion motion(*problem, treeOfViews(*problem));
     const std::vector<Vector6> from = posesOf(*problem), poses = motion.posesAfter(steps);
     std::vector<Vec3d> moved;
+    std::vector<Matx33d> R(VIEWS);
     for (int view = 0; view < VIEWS; view++)
     {
-        Matx33d R;
-        Rodrigues(Vec3d(poses[view].data()), R);
-        moved.push_back(R.t()*(seenBy(from[view], middles[view]) - Vec3d(poses[view].data() + 3)));
+        Rodrigues(Vec3d(poses[view].data()), R[view]);
+        moved.push_back(R[view].t()*(seenBy(from[view], middles[view]) - Vec3d(poses[view].data() + 3)));
     }
     for (int view = 1; view < VIEWS; view++)
     {
         CAPTURE(view);
         const double before = norm(middles[view] - middles[view - 1]);
         CHECK(std::abs(norm(moved[view] - moved[view - 1]) - before) < 1e-3*before);
+        Vec3d between;
+        Rodrigues(R[view - 1]*R[view].t(), between);        // in the frame that has turned
+        CHECK(norm(between - (turns[view] - turns[view - 1])) < 0.01*norm(between));
     }
 }
