@@ -125,10 +125,11 @@ Survey makeSurvey(int views, double wrong)
     const int count = PER_VIEW*views;
     for (int i = 0; i < count; i++)
         survey.points.push_back(Point3d(length*(i + part(engine))/count - 350, WIDTH*(part(engine) - 0.5), RELIEF*(part(engine) - 0.5)));
-    for (int view = 0; view < views; view += 20)
+    for (int view = 6; view < views; view += 20)        // within the strip, where seven or eight images see it
     {
         const int a = PER_VIEW*view + PER_VIEW/2;
-        const Vec3d along(view % 40 ? 0.6 : 0.8, view % 40 ? 0.8 : -0.6, 0);
+        const bool isOdd = view % 40 > 20;
+        const Vec3d along(isOdd ? 0.6 : 0.8, isOdd ? 0.8 : -0.6, 0);
         Point3d& end = survey.points[a + 1];
         end = survey.points[a] + Point3d(BAR*along*(survey.points[a].y*along[1] > 0 ? -1 : 1));
         survey.lengths.push_back(Vec4d(a, a + 1, BAR + BAR_SIGMA/SIGMA*noise(engine), BAR_SIGMA));
