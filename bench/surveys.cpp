@@ -297,7 +297,7 @@ void printSurveys(int least, int most)
             before = views;
         }
     printHead("    wrong, %  good lost wrong kept");
-    for (int views : { 20, 100, 300 })
+    for (int views : { 20, 100, 300, 1000 })
         if (views >= least && views <= most)
             run(views, 0.1, 0, 0);
 }

@@ -323,7 +323,7 @@ TEST_CASE("refract_simulate refuses textured scenes it cannot render, with one s
     const auto shape = [](const std::string& keys) { return texturedScene("   - { " + keys + " }\n", SCENE_SETS); };
     struct Case { std::string text, expected; };
     for (const Case& c : {Case{replaced("scene:\n", "scenery:\n"), "no 'target' and no 'scene'"},
-                          Case{replaced("texture:", "textur:"), "'texture: { size"},
+                          Case{replaced("texture:", "textur:"), "is it 'texture'?"},
                           Case{replaced("size: 60.", "size: 0."), "texture: 'size'"},
                           Case{replaced("size: 60., ", ""), "texture: 'size'"},
                           Case{replaced("contrast: 0.8", "contrast: 1.8"), "'contrast'"},

@@ -61,7 +61,7 @@ void Keys::allowOnly(const std::vector<std::string>& known) const
     std::string names;
     for (const std::string& name : known)
         names += (names.empty() ? "" : ", ") + name;
-    for (const std::string& key : node_.keys())
+    for (const std::string& key : node_.empty() ? std::vector<std::string>() : node_.keys())
         if (std::find(known.begin(), known.end(), key) == known.end())
             throw Failure(name_ + ": there is no key '" + key + "'; it takes " + names);
 }
