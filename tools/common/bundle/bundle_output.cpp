@@ -4,6 +4,7 @@
 #include "bundle/bundle_output.hpp"
 #include "calibrate/estimated_parameters.hpp"
 #include "console/csv.hpp"
+#include "console/median.hpp"
 #include "console/table.hpp"
 
 #include <algorithm>
@@ -53,14 +54,6 @@ int shownCameras(const BundleFindings& findings)
 {
     const auto hasAxis = [](const CameraCorrection& c) { return c.axis.estimated; };
     return std::any_of(findings.corrections.begin(), findings.corrections.end(), hasAxis) ? 2 : 3;
-}
-
-double median(std::vector<double> values)
-{
-    if (values.empty())
-        return std::numeric_limits<double>::quiet_NaN();
-    std::nth_element(values.begin(), values.begin() + values.size()/2, values.end());
-    return values[values.size()/2];
 }
 
 std::string pointsLine(const BundleAdjustment& adjustment, const std::string& unit)

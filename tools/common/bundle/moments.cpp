@@ -3,6 +3,7 @@
 
 #include "bundle/moments.hpp"
 #include "console/failure.hpp"
+#include "console/median.hpp"
 #include "diagnose/fit_quality.hpp"
 
 #include <cmath>

@@ -7,6 +7,7 @@
 #include "console/failure.hpp"
 #include "console/file_output.hpp"
 #include "console/json.hpp"
+#include "console/median.hpp"
 #include "console/outputs.hpp"
 #include "console/progress.hpp"
 
@@ -96,12 +97,6 @@ int cameraOf(const ColmapImage& image, const Calibration& calibration)
         throw Failure(format("image '%s' is of camera %u of the model, and the calibration has %d: give what refract_bundle --colmap-out "
                              "wrote with this calibration", image.name.c_str(), image.camera, count));
     return (int)image.camera - 1;
-}
-
-double median(std::vector<double> values)
-{
-    std::nth_element(values.begin(), values.begin() + values.size()/2, values.end());
-    return values[values.size()/2];
 }
 
 //! px: how far the camera sees a point of the image from where it was seen; infinite: it does not see it.

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "colmap/scene_depth.hpp"
+#include "console/median.hpp"
 
 #include <opencv2/imgproc.hpp>
 #include <algorithm>
@@ -13,12 +14,6 @@ namespace tools {
 namespace {
 
 const int CELL = 16;            // px
-
-double median(std::vector<double> values)
-{
-    std::nth_element(values.begin(), values.begin() + values.size()/2, values.end());
-    return values[values.size()/2];
-}
 
 /** 1/z = p0 + p1 x + p2 y, where x, y are -1 ... 1; of few points it is their median. Points far off it have little say: a wrong one near
 the camera has a 1/z above all others. */

@@ -5,6 +5,7 @@
 #include "bundle/bundle_output.hpp"
 #include "console/csv.hpp"
 #include "console/json.hpp"
+#include "console/median.hpp"
 #include "console/table.hpp"
 
 #include <algorithm>
@@ -20,15 +21,6 @@ namespace {
 
 const double DEGREES = 180./CV_PI;
 
-double median(std::vector<double> values)
-{
-    values.erase(std::remove_if(values.begin(), values.end(), [](double v) { return std::isnan(v); }), values.end());
-    if (values.empty())
-        return std::numeric_limits<double>::quiet_NaN();
-    std::nth_element(values.begin(), values.begin() + values.size()/2, values.end());
-    return values[values.size()/2];
-}
-
 Vec3d medianStd(const std::vector<Vec3d>& stds)
 {
     Vec3d medians;
@@ -36,7 +28,8 @@ Vec3d medianStd(const std::vector<Vec3d>& stds)
     {
         std::vector<double> of;
         for (const Vec3d& std : stds)
-            of.push_back(std[k]);
+            if (!std::isnan(std[k]))
+                of.push_back(std[k]);
         medians[k] = median(of);
     }
     return medians;

@@ -5,6 +5,7 @@
 #include "colmap/scale_of_window.hpp"
 #include "console/csv.hpp"
 #include "console/failure.hpp"
+#include "console/median.hpp"
 #include "console/progress.hpp"
 
 #include <algorithm>
@@ -33,14 +34,6 @@ struct Similarity
     }
 };
 
-double medianOf(std::vector<double> values)
-{
-    if (values.empty())
-        return 0.;
-    std::nth_element(values.begin(), values.begin() + values.size()/2, values.end());
-    return values[values.size()/2];
-}
-
 Vec3d centreOf(const ColmapPose& pose) { return transformOf(pose).inverse(Vec3d()); }
 
 //! An image of each view, and camera; -1: there is none.
@@ -58,7 +51,7 @@ double scaleOfLengths(const Survey& survey, const GivenLengths& lengths)
     std::vector<double> ratios;
     for (const GivenLength& l : lengths.list)
         ratios.push_back(l.length/norm(survey.model.points[l.a].X - survey.model.points[l.b].X));
-    return medianOf(ratios);
+    return ratios.empty() ? 0. : median(ratios);
 }
 
 //! 0: no view is of two cameras.
@@ -70,7 +63,7 @@ double scaleOfRig(const Survey& survey, const RigModel& rig)
             if (images[0] >= 0 && images[c] >= 0)
                 ratios.push_back(norm(rig.extrinsics[c].T)/norm(centreOf(survey.model.images[images[0]].cam_from_world)
                                                                 - centreOf(survey.model.images[images[c]].cam_from_world)));
-    return medianOf(ratios);
+    return ratios.empty() ? 0. : median(ratios);
 }
 
 //! Horn's and Umeyama's: the model onto the positions.

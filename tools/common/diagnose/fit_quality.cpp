@@ -3,6 +3,7 @@
 
 #include "diagnose/fit_quality.hpp"
 #include "calibrate/image_fit.hpp"
+#include "console/median.hpp"
 #include <algorithm>
 #include <cmath>
 
@@ -18,14 +19,6 @@ const double CORNERS_SHARE = 1./640.;   // in a larger one, of its longer side
 const int SOON = 30;                    // iterations: what is right is fitted by fewer; a wrong guess may creep for a thousand
 
 } // namespace
-
-double median(std::vector<double> values)
-{
-    if (values.empty())
-        return 0.;
-    std::nth_element(values.begin(), values.begin() + values.size()/2, values.end());
-    return values[values.size()/2];
-}
 
 double medianCornerError(const RigData& data, const std::vector<Residual>& residuals)
 {

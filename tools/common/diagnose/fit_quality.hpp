@@ -13,9 +13,6 @@ namespace tools {
 
 const double NO_FIT = std::numeric_limits<double>::infinity();
 
-//! 0 of none.
-double median(std::vector<double> values);
-
 /** The median length of the residuals, px, which outliers hardly change: that of the worst camera, over the views with a glass image,
 as direct images alone always fit. */
 double medianCornerError(const RigData& data, const std::vector<Residual>& residuals);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "diagnose/image_disagreement.hpp"
+#include "console/median.hpp"
 #include "diagnose/fit_quality.hpp"
 #include "calibrate/pinhole_camera.hpp"
 #include <opencv2/calib3d.hpp>
@@ -25,7 +26,7 @@ double pairsApart(const RigData& data, int camera)
             for (size_t i = 0; i < view.objectPoints.size(); i++)
                 if (seen(view.direct[camera][i]) && seen(view.glass[camera][i]))
                     lengths.push_back(norm(view.direct[camera][i] - view.glass[camera][i]));
-    return median(lengths);
+    return lengths.empty() ? 0. : median(lengths);
 }
 
 void addImage(const View& view, const std::vector<Point2d>& pixels, std::vector<std::vector<Point3f>>& objects,

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "diagnose/target_mistakes.hpp"
+#include "console/median.hpp"
 #include "diagnose/fit_quality.hpp"
 #include "console/table.hpp"
 #include <opencv2/calib3d.hpp>

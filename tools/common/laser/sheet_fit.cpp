@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "laser/sheet_fit.hpp"
+#include "console/median.hpp"
 #include "laser/sheet_consensus.hpp"
 #include "laser/sheet_line.hpp"
 #include "console/failure.hpp"
@@ -82,12 +83,6 @@ double poseNoiseOf(const std::vector<ReducedLine>& lines, const VectorXd& deviat
         (chiSquare(middle) > dof ? low : high) = middle;
     }
     return high;
-}
-
-double medianOf(std::vector<double> values)
-{
-    std::nth_element(values.begin(), values.begin() + values.size()/2, values.end());
-    return values[values.size()/2];
 }
 
 //! What the points are off a straight line, and what of that is not white noise.
@@ -270,7 +265,7 @@ void judgeLines(const Boards& boards, Estimate& estimate, SheetFit& fit)
         }
     }
     fit.sheetStd = std::sqrt(variances/points);
-    fit.sheet.lineNoise = medianOf(noises);
+    fit.sheet.lineNoise = median(noises);
     fit.sheet.depth = Vec2d(nearest, farthest);
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "laser/sheet_line.hpp"
+#include "console/median.hpp"
 #include "laser/sheet_consensus.hpp"
 #include "measure/point_derivatives.hpp"
 #include "math/dense.hpp"
@@ -44,12 +45,6 @@ struct OnLine
         direction = intersectionOf(image, Vec4d(normal[0], normal[1], normal[2], 0.));
     }
 };
-
-double medianOf(std::vector<double> values)
-{
-    std::nth_element(values.begin(), values.begin() + values.size()/2, values.end());
-    return values[values.size()/2];
-}
 
 //! Points that are independent of each other, one by one along the line.
 std::vector<int> thinned(const BoardImage& image, std::vector<int> points, double distance)
@@ -153,7 +148,7 @@ std::vector<int> pointsOnSheet(const BoardImage& image, const SheetSurface& shee
         std::vector<double> lengths;
         for (double r : rest)
             lengths.push_back(std::abs(r));
-        const double most = OUTLIER*1.4826*medianOf(lengths);
+        const double most = OUTLIER*1.4826*median(lengths);
         std::vector<int> kept;
         for (size_t k = 0; k < points.size(); k++)
             if (lengths[k] <= most)

@@ -4,6 +4,7 @@
 #include "match/wand_matches.hpp"
 #include "bundle/bundle_adjustment.hpp"
 #include "console/failure.hpp"
+#include "console/median.hpp"
 #include "console/numbers.hpp"
 #include "console/progress.hpp"
 #include "match/scene_matches.hpp"
@@ -21,14 +22,6 @@ namespace {
 const double NaN = std::numeric_limits<double>::quiet_NaN();
 const int FEWEST = 8;               // moments, of which a fit can be made
 const int MOST_LATE = 3;            // images, by which cameras may be out of step
-
-double medianOf(std::vector<double> values)
-{
-    if (values.empty())
-        return NaN;
-    std::nth_element(values.begin(), values.begin() + (std::ptrdiff_t)values.size()/2, values.end());
-    return values[values.size()/2];
-}
 
 /* What a camera shows that does not move, and what its images have in common. */
 struct StillCamera
@@ -114,7 +107,7 @@ public:
             misses.push_back(best->rms());
             lengths.push_back(best->length()/wand_.length);
         }
-        return (int)misses.size() < std::max(FEWEST, looked/2) ? Usual{NaN, NaN} : Usual{medianOf(misses), medianOf(lengths)};
+        return (int)misses.size() < std::max(FEWEST, looked/2) ? Usual{NaN, NaN} : Usual{median(misses), median(lengths)};
     }
 
     WandMatches matches(const RigModel& rig, const WandLimits& limits) const

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "target/board_quality.hpp"
+#include "console/median.hpp"
 #include "target/april_grid.hpp"
 
 #include <opencv2/imgproc.hpp>
@@ -33,14 +34,6 @@ std::vector<double> profile(const Mat& grey, const Point2d& from, const Point2d&
     remap(grey, values, map, noArray(), INTER_LINEAR, BORDER_REPLICATE);
     values.convertTo(values, CV_64F);
     return std::vector<double>(values.begin<double>(), values.end<double>());
-}
-
-double median(std::vector<double> values)
-{
-    if (values.empty())
-        return std::numeric_limits<double>::quiet_NaN();
-    std::nth_element(values.begin(), values.begin() + (long)values.size()/2, values.end());
-    return values[values.size()/2];
 }
 
 struct Edge
