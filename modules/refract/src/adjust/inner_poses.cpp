@@ -12,7 +12,6 @@ namespace {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-typedef Eigen::Matrix<double, 6, 1> Vector6;
 
 //! A view's residuals and their derivatives by its pose, with its prior.
 struct PoseRows

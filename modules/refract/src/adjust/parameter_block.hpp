@@ -15,6 +15,7 @@ namespace ceres { class Manifold; }
 namespace cv { namespace refract {
 
 typedef Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> RowMajorMatrix;
+typedef Eigen::Matrix<double, 6, 1> Vector6;        //!< a pose or a step of it: rvec, t
 
 //! Parameters of the problem that belong together.
 struct ParameterBlock

@@ -57,11 +57,11 @@ bool ReducedCost::isPose(size_t variable) const { return problem_.blocks()[varia
 
 void ReducedCost::setStep(const VectorXd& step)
 {
-    std::vector<Vector6> steps(anchor_->motion ? problem_.viewCount() : 0, Vector6::Zero());
+    std::vector<Vector6> steps(problem_.viewCount(), Vector6::Zero());
     for (size_t i = 0; i < variable_.size(); i++)
         if (isPose(i))
             steps[problem_.blocks()[variable_[i]].index] = step.segment<6>(anchor_->space.first[variable_[i]]);
-    const std::vector<Vector6> poses = anchor_->motion ? anchor_->motion->posesAfter(steps) : steps;
+    const std::vector<Vector6> poses = anchor_->motion->posesAfter(steps);
     for (size_t i = 0; i < variable_.size(); i++)
     {
         const ParameterBlock& block = problem_.blocks()[variable_[i]];

@@ -25,7 +25,7 @@ public:
     const std::vector<int>& variableBlocks() const { return variable_; }
     /** Where Ceres has the values of the variable blocks, one after the other; before anything is asked. */
     void setState(const std::vector<double*>& state) { state_ = state; }
-    //! What the state is after a step of the free coordinates from where it was linearised last, within its bounds.
+    //! Of a scene: what the state is after a step of the free coordinates from where it was linearised last, within its bounds.
     void setStep(const Eigen::VectorXd& step);
     void restore();                     //!< to where it was linearised last
     //! The inner blocks to their best at the state. False where there is no cost.

@@ -198,19 +198,27 @@ std::vector<Vector6> ViewMotion::stepsTo(const std::vector<Vector6>& poses)
 
 void ViewMotion::movePoints(const Problem& problem, int cluster, const Eigen::VectorXd& change, Eigen::Ref<Eigen::VectorXd> points) const
 {
-    const Eigen::VectorXd before = points;
-    points += change;
+    const int count = (int)points.size()/3;
+    std::vector<const View*> seenBy(count, nullptr);        // the last of those that see it
     for (const Observation& o : problem.observationsOf(cluster))
     {
         const Image& image = problem.images()[o.image];
-        const int at = 3*problem.scene().placeInCluster(image.points.index[o.row]);
-        if (!(image.rootWeights[o.row] > 0))
-            continue;
-        const View& view = views_[image.view];
-        const Vec3d arm = sceneScale_*Vec3d(&before[at]) - view.middle;
-        const Vec3d own = sceneScale_*Vec3d(&change[at]) - view.way - view.turn.cross(arm);
-        const Vec3d moved = (view.moved + view.turned*(arm + own))/sceneScale_;
-        points.segment<3>(at) = Eigen::Map<const Eigen::Vector3d>(moved.val);
+        if (image.rootWeights[o.row] > 0)
+            seenBy[problem.scene().placeInCluster(image.points.index[o.row])] = &views_[image.view];
+    }
+    for (int i = 0; i < count; i++)
+    {
+        Vec3d point(&points[3*i]);
+        const Vec3d pointChange(&change[3*i]);
+        if (const View* const view = seenBy[i])
+        {
+            const Vec3d arm = sceneScale_*point - view->middle;
+            const Vec3d own = sceneScale_*pointChange - view->way - view->turn.cross(arm);
+            point = (view->moved + view->turned*(arm + own))/sceneScale_;
+        }
+        else
+            point += pointChange;
+        points.segment<3>(3*i) = Eigen::Map<const Eigen::Vector3d>(point.val);
     }
 }
 

@@ -10,8 +10,6 @@
 
 namespace cv { namespace refract {
 
-typedef Eigen::Matrix<double, 6, 1> Vector6;
-
 //! From a view to another one that sees the same.
 struct ViewEdge
 {
