@@ -300,6 +300,17 @@ TEST_CASE("Where images of a wand leave a fit undetermined, what was seen of it 
     CHECK(mentions(result.err, "; wand: 23 of 30 moments; left out: 7 where"));
 }
 
+TEST_CASE("What the images of a wand do not tell ends in a sentence, not in an assertion", "[tools][bundle][wand]")
+{
+    const TemporaryFolder f;
+    const std::string folder = paths::bundled() + "/balls";
+    const ToolResult result = runTool("refract_bundle " + folder + "/start.yml --wand=200,0.1 '" + folder + "/left/*' '" + folder
+                                      + "/right/*' --free=index --out=" + f / "c.yml");
+    CAPTURE(result.out, result.err);
+    CHECK(result.code == 1);
+    CHECK(mentions(result.err, "leave out of --free what the points hardly tell; wand: 23 of 30 moments"));
+}
+
 TEST_CASE("The images of a wand of the guide are made anew", "[.wand-data]")
 {
     const std::string known = paths::bundled() + "/wand", folder = paths::bundled() + "/balls";
