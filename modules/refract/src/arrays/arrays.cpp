@@ -375,4 +375,16 @@ void writeVectors(const std::vector<Vec3d>& vectors, OutputArrayOfArrays out)
     }
 }
 
+void writeMatrices(const std::vector<Mat>& matrices, OutputArrayOfArrays out)
+{
+    if (!out.needed())
+        return;
+    out.create((int)matrices.size(), 1, CV_64F);
+    for (int i = 0; i < (int)matrices.size(); i++)
+    {
+        out.create(matrices[i].size(), CV_64F, i, true);
+        matrices[i].copyTo(out.getMat(i));
+    }
+}
+
 }} // namespace

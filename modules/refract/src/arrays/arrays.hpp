@@ -111,6 +111,8 @@ std::vector<Point3d> readPoints3(InputArray a, const char* name);
 
 //! As calib3d writes them: a 3x1 array each, or one array of 3-vectors; nothing if they are not wanted.
 void writeVectors(const std::vector<Vec3d>& vectors, OutputArrayOfArrays out);
+//! CV_64F, of any sizes; nothing if they are not wanted.
+void writeMatrices(const std::vector<Mat>& matrices, OutputArrayOfArrays out);
 
 }} // namespace
 

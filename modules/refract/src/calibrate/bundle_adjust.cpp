@@ -233,19 +233,6 @@ BundleFit adjust(const BundleImages& images, const std::vector<Point3d>& points,
     return fit;
 }
 
-//! One array a view.
-void writeCovariances(const std::vector<Mat>& covariances, OutputArrayOfArrays out)
-{
-    if (!out.needed())
-        return;
-    out.create((int)covariances.size(), 1, CV_64F);
-    for (int i = 0; i < (int)covariances.size(); i++)
-    {
-        out.create(covariances[i].size(), CV_64F, i, true);
-        covariances[i].copyTo(out.getMat(i));
-    }
-}
-
 const int BUNDLE_FLAGS = MONO_FLAGS | GLASS_FREE_EXTRINSICS | GLASS_FIX_NORMAL;
 
 } // namespace
@@ -296,7 +283,7 @@ double refractiveBundleAdjust(InputArray observations, InputArray imagePoints, c
                                  { poseCovariances, cameraCovariances, rigCovariance, lengthScaleStd },
                                  { viewCovariances.needed(), pointDeviations.needed() });
     writeFit(fit, rvecs, tvecs, stdDeviations, covariance, perViewErrors);
-    writeCovariances(fit.poseCovariances, viewCovariances);
+    writeMatrices(fit.poseCovariances, viewCovariances);
     writeMat(fit.pointDeviations, pointDeviations);
     writeMat(listedMask(images, fit.isUsed), inliers);
     return fit.rms;

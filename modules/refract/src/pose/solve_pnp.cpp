@@ -74,12 +74,7 @@ static void writeCovariances(const Camera& camera, const ImagePoints& points, co
     std::vector<Mat> all;
     for (const PoseMinimum& minimum : minima)
         all.push_back(Mat(poseCovariance(camera, points, origin, minimum.pose, noise), true));
-    covariances.create((int)all.size(), 1, CV_64F);
-    for (int i = 0; i < (int)all.size(); i++)
-    {
-        covariances.create(6, 6, CV_64F, i, true);
-        all[i].copyTo(covariances.getMat(i));
-    }
+    writeMatrices(all, covariances);
 }
 
 //! As cv::solvePnPGeneric's: of coordinates, not of distances.
