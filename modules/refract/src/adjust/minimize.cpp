@@ -160,9 +160,27 @@ void Minimization::solve(TrustRegion& region, const std::vector<double*>& state)
     region.solve(problem, problem_.hasScene(), groups.size() > 1);
 }
 
+//! Of predicted ones, px: a camera far from the scene's origin loses digits of where its points are.
+static double roundingOfPixels(const Problem& problem)
+{
+    const double LEAST = 1e-12;
+    double most = LEAST;
+    for (const Image& image : problem.images())
+    {
+        const Pose pose = problem.pose(image.view);
+        if (image.points.object.empty() || !pose.found)
+            continue;
+        const Vec3d X(image.points.object[0]), inCamera = rotationMatrix(pose.rvec)*X + pose.tvec;
+        const double focalLength = problem.camera(image.camera).lens().parameters()[0];
+        most = std::max(most, DBL_EPSILON*std::max(norm(X), norm(pose.tvec))*focalLength/norm(inCamera));
+    }
+    return most;
+}
+
 void Minimization::descend(TrustRegion& region)
 {
-    DampedSteps steps = { (double)problem_.equationCount(), region.change, 1/region.radius, region.iterations, false, region.leastGain };
+    DampedSteps steps = { (double)problem_.equationCount(), region.change, 1/region.radius, region.iterations, false, region.leastGain,
+                          roundingOfPixels(problem_) };
     const double begin = cost_->squaredError(), before = region.radius;
     steps.run(*cost_);
     region.iterations = std::max(1, steps.iterations);
@@ -277,13 +295,15 @@ bool Minimization::holdAtBounds()
     return changed;
 }
 
-//! The step that is left is far below the uncertainty of what it would move.
+//! The step that is left is far below the uncertainty of what it would move, or what rounding hides.
 bool Minimization::isAtMinimum() const
 {
     const double NEGLIGIBLE = 1e-3;     // standard deviations
     const double LEAST_SIGMA = problem_.hasScene() ? 1e-3 : 1e-6;   // px: perfect data end in rounding errors
     const double variance = problem_.freedom() > 0 ? problem_.squaredError()/problem_.freedom() : 0;
-    return newtonDecrement(cost_->information()) < NEGLIGIBLE*std::max(std::sqrt(variance), LEAST_SIGMA);
+    const double decrement = newtonDecrement(cost_->information()), hidden = problem_.hasScene() ?
+        DampedSteps::roundingOf(problem_.squaredError(), problem_.equationCount(), roundingOfPixels(problem_)) : 0;
+    return decrement < NEGLIGIBLE*std::max(std::sqrt(variance), LEAST_SIGMA) || decrement*decrement < hidden;
 }
 
 /** Along curved valleys (distance against focal length) the steps of Levenberg and Marquardt creep, near the edge of the
