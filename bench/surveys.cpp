@@ -42,6 +42,15 @@ double priorSigma(const String& name)
     return name.find("outer") == 0 ? 5e-4 : name.find("index") == 0 ? 1e-3 : 0;
 }
 
+//! Which one to make.
+struct Strip
+{
+    int views;
+    double wrong;           // part of the observations
+    unsigned seed;
+    bool hasWindow;
+};
+
 struct Survey
 {
     Ptr<RefractiveCamera> camera;
@@ -59,12 +68,14 @@ Vec3d randomVector(std::mt19937_64& engine, double sigma)
     return Vec3d(noise(engine), noise(engine), noise(engine));
 }
 
-//! In the order of parameterNames(), of a flat pane without a wedge.
+//! In the order of parameterNames(), of a flat pane without a wedge; of a camera without a window those of its lens.
 std::vector<double> parametersOf(const Ptr<RefractiveCamera>& camera)
 {
     const Mat_<double> lens = camera->lensParameters();
     const GlassWindow window = camera->window();
     std::vector<double> all(lens.begin(), lens.end());
+    if (window.thickness.empty())
+        return all;
     all.insert(all.end(), window.normal.val, window.normal.val + 3);
     all.insert(all.end(), { window.distance, window.thickness[0], window.index[0], window.innerIndex, window.outerIndex });
     CV_Assert(all.size() == camera->parameterNames().size());
@@ -75,6 +86,8 @@ void setParameters(const std::vector<double>& all, const Ptr<RefractiveCamera>& 
 {
     const int lens = camera->lensParameters().rows;
     camera->setLensParameters(Mat(std::vector<double>(all.begin(), all.begin() + lens), true));
+    if ((int)all.size() == lens)
+        return;
     GlassWindow window = camera->window();
     const double* const own = &all[lens];
     window.normal = normalize(Vec3d(own));
@@ -86,41 +99,42 @@ void setParameters(const std::vector<double>& all, const Ptr<RefractiveCamera>& 
 }
 
 //! The camera, or one that is off by what is known of it.
-Ptr<RefractiveCamera> makeCamera(std::mt19937_64* off, Mat& covariance)
+Ptr<RefractiveCamera> makeCamera(bool hasWindow, std::mt19937_64* off, Mat& covariance)
 {
-    const GlassWindow window(normalize(Vec3d(0.03, -0.02, 1)), 12, 1.49, 40, 1.34);
+    const GlassWindow window = hasWindow ? GlassWindow(normalize(Vec3d(0.03, -0.02, 1)), 12, 1.49, 40, 1.34) : GlassWindow();
     Ptr<RefractiveCamera> camera = RefractiveCamera::create(Matx33d(1200, 0, 640, 0, 1200, 512, 0, 0, 1),
                                                             std::vector<double>{ -0.1, 0.05, 0, 0 }, window);
     const std::vector<String> names = camera->parameterNames();
     std::vector<double> values = parametersOf(camera);
     covariance = Mat::zeros((int)names.size(), (int)names.size(), CV_64F);
     int normal = -1;
-    for (int i = 0; i < (int)names.size(); i++)
+    for (int i = 0; i < (int)values.size(); i++)
     {
         covariance.at<double>(i, i) = std::pow(priorSigma(names[i]), 2);
         normal = normal < 0 && names[i].find("normal") == 0 ? i : normal;
     }
     const Vec3d n = window.normal;
-    Mat(std::pow(priorSigma("normal"), 2)*(Matx33d::eye() - n*n.t())).copyTo(covariance(Rect(normal, normal, 3, 3)));
+    if (normal > 0)
+        Mat(std::pow(priorSigma("normal"), 2)*(Matx33d::eye() - n*n.t())).copyTo(covariance(Rect(normal, normal, 3, 3)));
     if (off)
     {
         std::normal_distribution<double> noise(0, 1);
-        for (int i = 0; i < (int)names.size(); i++)
+        for (int i = 0; i < (int)values.size(); i++)
             values[i] += priorSigma(names[i])*noise(*off);
         setParameters(values, camera);
     }
     return camera;
 }
 
-//! @param wrong part of the observations
-Survey makeSurvey(int views, double wrong)
+Survey makeSurvey(const Strip& strip)
 {
-    std::mt19937_64 engine(views);
+    const int views = strip.views;
+    std::mt19937_64 engine(strip.seed);
     std::uniform_real_distribution<double> part(0, 1);
     std::normal_distribution<double> noise(0, SIGMA);
     Survey survey;
     Mat unused;
-    survey.camera = makeCamera(nullptr, unused);
+    survey.camera = makeCamera(strip.hasWindow, nullptr, unused);
     const double length = STEP*views + 700;
     const int count = PER_VIEW*views;
     for (int i = 0; i < count; i++)
@@ -152,7 +166,7 @@ Survey makeSurvey(int views, double wrong)
             const Point2d pixel = pixels[k];
             if (status[k] != REFRACT_OK || !(pixel.x > 0 && pixel.y > 0 && pixel.x < IMAGE.width && pixel.y < IMAGE.height))
                 continue;
-            const bool isWrong = part(engine) < wrong;
+            const bool isWrong = part(engine) < strip.wrong;
             const Vec2d off = isWrong ? 20*Vec2d(part(engine) - 0.5, part(engine) - 0.5) : Vec2d(noise(engine), noise(engine));
             survey.observations.push_back(Vec3i(view, 0, begin + (int)k));
             survey.pixels.push_back(pixel + Point2d(off));
@@ -174,12 +188,12 @@ struct Found
 };
 
 //! Cameras are off by half a degree and 10 mm, but for the first.
-Found adjust(const Survey& survey, int flags)
+Found adjust(const Strip& strip, const Survey& survey)
 {
-    std::mt19937_64 engine(7);
+    std::mt19937_64 engine(strip.seed + 7);
     Found found;
     Mat prior, covariance, perViewErrors;
-    found.camera = makeCamera(&engine, prior);
+    found.camera = makeCamera(strip.hasWindow, &engine, prior);
     for (size_t view = 0; view < survey.rvecs.size(); view++)
     {
         Matx33d R, offR;
@@ -191,6 +205,7 @@ Found adjust(const Survey& survey, int flags)
         found.tvecs.push_back(Mat(-(offR*centre), true));
     }
     found.points.assign(survey.points.size(), Point3d(NAN, NAN, NAN));
+    const int flags = (strip.wrong > 0 ? GLASS_ROBUST : 0) | (strip.hasWindow ? 0 : GLASS_FIX_NORMAL);
     const double begin = processorSeconds(), clock = (double)getTickCount();
     std::vector<Mat> Rs, Ts;
     found.rms = refractiveBundleAdjust(survey.observations, survey.pixels, { found.camera }, {}, Rs, Ts, found.rvecs, found.tvecs,
@@ -234,12 +249,12 @@ double pointsOverStated(const Survey& survey, const Found& found)
     return std::sqrt(sum/count);
 }
 
-double windowOverStated(const Survey& survey, const Found& found)
+double cameraOverStated(const Survey& survey, const Found& found)
 {
     const std::vector<double> truth = parametersOf(survey.camera), own = parametersOf(found.camera);
     double sum = 0;
     int count = 0;
-    for (int i = 0; i < found.deviations.rows; i++)
+    for (int i = 0; i < (int)truth.size(); i++)
         if (found.deviations.at<double>(i) > 0)
         {
             sum += std::pow((own[i] - truth[i])/found.deviations.at<double>(i), 2);
@@ -251,8 +266,9 @@ double windowOverStated(const Survey& survey, const Found& found)
 //! @return seconds
 double run(int views, double wrong, double secondsBefore, int viewsBefore)
 {
-    const Survey survey = makeSurvey(views, wrong);
-    const Found found = adjust(survey, wrong > 0 ? GLASS_ROBUST : 0);
+    const Strip strip = { views, wrong, (unsigned)views, true };
+    const Survey survey = makeSurvey(strip);
+    const Found found = adjust(strip, survey);
     size_t lost = 0, kept = 0, good = 0;        // a point that too few see to tell which of them is wrong is left out as a whole
     for (size_t i = 0; i < survey.isWrong.size(); i++)
     {
@@ -266,7 +282,7 @@ double run(int views, double wrong, double secondsBefore, int viewsBefore)
     getrusage(RUSAGE_SELF, &usage);
     std::printf("%7d%9zu%9zu%9.1f%9.1f%7ld%9.3f%8.2f%8.2f%8.2f", views, survey.points.size(), survey.pixels.size(), found.cpu, found.clock,
                 usage.ru_maxrss/1024, found.rms, posesOverStated(survey, found), pointsOverStated(survey, found),
-                windowOverStated(survey, found));
+                cameraOverStated(survey, found));
     if (wrong > 0)
         std::printf("%11.0f%11.1e%11zu", 100*wrong, (double)lost/(double)good, kept);
     else if (viewsBefore > 0)
@@ -282,7 +298,34 @@ void printHead(const char* last)
                 "points", "camera", last);
 }
 
+//! Of several strips: what is off in a camera is off in all points of its strip alike.
+void runMany(int views, int strips, bool hasWindow)
+{
+    double poses = 0, points = 0, camera = 0, seconds = 0;
+    for (int i = 0; i < strips; i++)
+    {
+        const Strip strip = { views, 0, 1000u*(i + 1) + views, hasWindow };
+        const Survey survey = makeSurvey(strip);
+        const Found found = adjust(strip, survey);
+        poses += std::pow(posesOverStated(survey, found), 2)/strips;
+        points += std::pow(pointsOverStated(survey, found), 2)/strips;
+        camera += std::pow(cameraOverStated(survey, found), 2)/strips;
+        seconds += found.cpu/strips;
+    }
+    std::printf("%-17s%7d%8d%9.1f%8.2f%8.2f%8.2f\n", hasWindow ? "through its port" : "without a window", strips, views, seconds,
+                std::sqrt(poses), std::sqrt(points), std::sqrt(camera));
+    std::fflush(stdout);
+}
+
 } // namespace
+
+void printManySurveys(int strips)
+{
+    std::printf("strips of other seeds; error/sigma, RMS\n%-17s%7s%8s%9s%8s%8s%8s\n", "", "strips", "views", "CPU, s", "poses", "points",
+                "camera");
+    for (const bool hasWindow : { true, false })
+        runMany(20, strips, hasWindow);
+}
 
 void printSurveys(int least, int most)
 {
