@@ -155,8 +155,6 @@ TEST_CASE("selectLensCoefficients is as good as the best fixed choice, in few im
     for (const int count : { 3, 6, 25 })
         for (const TrueLens& lens : LENSES)
         {
-            if (count < 25 && lens.count == 8)
-                continue;           // every choice is pixels off
             std::vector<double> ratios;
             int tooMany = 0, tooFew = 0;
             const int some = count == 25 ? std::max(4, repeats/3) : repeats;
@@ -180,9 +178,10 @@ TEST_CASE("selectLensCoefficients is as good as the best fixed choice, in few im
                       << median << ", worst " << ratios.back() << std::endl;
             CAPTURE(count, lens.name, Mat(ratios).t());
             CHECK(median <= 1.03);
-            // Of the rational lens the fit ends at times at a lens that folds within the image, and is not taken.
+            // Six or seven coefficients often serve for the rational lens of eight, and OpenCV's fit of all eight ends anywhere.
             CHECK(countWithin(ratios, count == 3 ? 1.25 : count == 6 ? 1.05 : 1.01) >= (lens.count == 8 ? 0.5 : 0.75)*some);
-            CHECK(tooMany <= 0.25*some);
+            // The best one has a coefficient too many in a sixth of draws for each step; what that costs is in the ratios.
+            CHECK(tooMany <= 0.5*some);
         }
 }
 
@@ -377,6 +376,8 @@ struct Stated
     }
 };
 
+const int POINTS_IN_WATER = 36;
+
 //! Pixels of points in the water, by the calibration and by the truth.
 void compareWithTruth(const Ptr<RefractiveCamera>& camera, const Ptr<RefractiveCamera>& truth, const Mat& covariance, Stated& result)
 {
@@ -385,6 +386,7 @@ void compareWithTruth(const Ptr<RefractiveCamera>& camera, const Ptr<RefractiveC
         for (double x : { -0.3, -0.1, 0.1, 0.3 })
             for (double y : { -0.24, 0., 0.24 })
                 points.push_back(z*Point3d(x, y, 1));
+    REQUIRE((int)points.size() == POINTS_IN_WATER);
     std::vector<Point2d> found, right;
     Mat status, jacobian;
     refractiveProjectPoints(points, Vec3d(), Vec3d(), camera, found, status, jacobian);
@@ -428,6 +430,22 @@ void calibrateHousing(const TrueLens& lens, int count, Random& random, Stated& r
 }
 
 } // namespace
+
+TEST_CASE("A wide lens that no polynomial bends is chosen and calibrated", "[select_lens]")
+{
+    CAPTURE(seed());
+    const auto lens = std::find_if(LENSES.begin(), LENSES.end(), [](const TrueLens& l) { return l.count == 8; });
+    for (const int count : { 14, 25 })
+        for (int trial = 0; trial < 3; trial++)
+        {
+            CAPTURE(count, trial);
+            Random random(7700 + 10*count + trial);
+            Stated result;
+            calibrateHousing(*lens, count, random, result);
+            CHECK(result.refused == 0);
+            CHECK(std::sqrt(result.errors/POINTS_IN_WATER) < 1.5);      // px; where the fit of a richer lens came to no end, it was 30
+        }
+}
 
 // Run with [.lens-choice], TRIALS calibrations of each kind.
 TEST_CASE("Lenses that the data choose: errors over what is stated", "[.lens-choice]")

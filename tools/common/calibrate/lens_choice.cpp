@@ -151,7 +151,8 @@ std::string namesOf(const LensScore& lens)
         return "no coefficients";
     std::string text = format("%d coefficient%s", lens.coefficients, lens.coefficients == 1 ? "" : "s");
     static const std::map<int, const char*> NAMES = {{1, "k1"}, {2, "k1, k2"}, {3, "k1 to k3"}, {4, "k1, k2, p1, p2"},
-                                                     {5, "k1, k2, p1, p2, k3"}, {8, "k1 to k6, p1, p2"}};
+                                                     {5, "k1, k2, p1, p2, k3"}, {6, "k1 to k4, p1, p2"},
+                                                     {7, "k1 to k5, p1, p2"}, {8, "k1 to k6, p1, p2"}};
     return text + " (" + (lens.model == "fisheye" && lens.coefficients == 4 ? "k1 to k4" : NAMES.at(lens.coefficients)) + ")";
 }
 
@@ -202,8 +203,8 @@ LensChoice chooseLens(const RigData& data, const RigOptions& options, bool robus
 
 void setLens(const LensScore& lens, RigOptions& options)
 {
-    const int LEAST = 4;        // of OpenCV's model, but for none at all
-    options.lensCoefficients = lens.model == "fisheye" ? FISHEYE_LENS : lens.coefficients == 0 ? 0 : std::max(LEAST, lens.coefficients);
+    static const int LENGTHS[] = { 0, 4, 4, 4, 4, 5, 8, 8, 8 };     // of OpenCV's coefficients, among which are so many
+    options.lensCoefficients = lens.model == "fisheye" ? FISHEYE_LENS : LENGTHS[lens.coefficients];
     options.flags |= lens.flags;
 }
 

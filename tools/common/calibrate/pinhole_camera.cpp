@@ -46,7 +46,8 @@ int translated(int fixed, const std::vector<std::pair<int, int>>& flags)
 int calibrateCameraFlags(int coefficients, int fixed)
 {
     const int FIXED = translated(fixed, {{GLASS_FIX_K1, CALIB_FIX_K1}, {GLASS_FIX_K2, CALIB_FIX_K2}, {GLASS_FIX_K3, CALIB_FIX_K3},
-                                         {GLASS_FIX_K4, CALIB_FIX_K4}, {GLASS_FIX_TANGENT_DIST, CALIB_ZERO_TANGENT_DIST}});
+                                         {GLASS_FIX_K4, CALIB_FIX_K4}, {GLASS_FIX_K5, CALIB_FIX_K5}, {GLASS_FIX_K6, CALIB_FIX_K6},
+                                         {GLASS_FIX_TANGENT_DIST, CALIB_ZERO_TANGENT_DIST}});
     for (const auto& lens : pinholeLenses())
         if (lens.second.coefficients == coefficients)
             return lens.second.flags | FIXED;

@@ -1502,11 +1502,11 @@ CV_EXPORTS_W double calibrateGlassRig(InputArrayOfArrays objectPoints,
 
 /** @brief Chooses how many coefficients of a lens the images can determine.
 
-Candidates are the lens without coefficients, with k1, with k1 and k2, with p1 and p2 too, then k3, then k4 to k6, and so on,
+Candidates are the lens without coefficients, with k1, with k1 and k2, with p1 and p2 too, then k3, k4, k5, k6, and so on,
 as far as the cameras' lenses have them. Each is fitted, and each view is held out in turn: its error, its pose fitted to it,
 is that of the fit to the other views (to first order, without fitting again). If there are fewer than 4 views, eighths of each
-target are held out, their poses fitted to the others. The candidate with the fewest coefficients is chosen whose held-out
-error is at most 2 % and one standard error of the difference above the best. A candidate that does not converge is left out.
+target are held out, their poses fitted to the others. The candidate with the least held-out error is chosen; with k4 to k6, a
+rational lens, only if it is better by a standard error of the difference. A fit that came to no end counts as it is.
 
 Give the images without the window, if there are enough of them (10 or more): only these, with cameras without a window, each
 view seen by one camera. Then no window is fitted. Otherwise give the images through the windows.

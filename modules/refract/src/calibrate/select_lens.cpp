@@ -6,8 +6,9 @@
 its errors on parts of the observations that are held out in turn (adjust/held_out.hpp). More coefficients always fit better what
 they are fitted to; held out they are worse from the number on that the data do not determine.
 
-The simplest candidate is chosen whose held-out error is not above the best one's by more than the difference's standard error and a few
-percent allow (as pruning by Breiman et al., Classification and Regression Trees, 1984); or one that is still simpler and better than it. */
+The best of them is chosen. The simplest that is not proven to be worse would fit about as well, but what it leaves out is then in the
+images, and in no standard deviation. Only the step to a rational lens, which bends without limit what no image shows, has to be proven:
+by one standard error, as Breiman et al. prune (Classification and Regression Trees, 1984). */
 
 #include "adjust/covariance.hpp"
 #include "adjust/held_out.hpp"
@@ -22,28 +23,27 @@ namespace cv { namespace refract {
 
 namespace {
 
-const double MOST_ABOVE_BEST = 1.02;    // held-out RMS of what is chosen
-const double MOST_STANDARD_ERRORS = 1;  // of its difference from the best
 const int START_POINTS = 150;           // of a target, to find where windows and cameras are
 const int ROUNDS = 3;                   // of leaving outliers out
 const double OUTLIER = 5;               // in standard deviations
 
-const int TILT = GLASS_FIX_TAUX_TAUY, PRISM = TILT | GLASS_FIX_S1_S2_S3_S4, RATIONAL = GLASS_FIX_K4 | GLASS_FIX_K5 | GLASS_FIX_K6 | PRISM,
-          K3 = GLASS_FIX_K3 | RATIONAL, TANGENT = GLASS_FIX_TANGENT_DIST | K3, K2 = GLASS_FIX_K2 | TANGENT, K1 = GLASS_FIX_K1 | K2;
+const int TILT = GLASS_FIX_TAUX_TAUY, PRISM = TILT | GLASS_FIX_S1_S2_S3_S4, K6 = GLASS_FIX_K6 | PRISM, K5 = GLASS_FIX_K5 | K6,
+          K4 = GLASS_FIX_K4 | K5, K3 = GLASS_FIX_K3 | K4, TANGENT = GLASS_FIX_TANGENT_DIST | K3, K2 = GLASS_FIX_K2 | TANGENT,
+          K1 = GLASS_FIX_K1 | K2;
 //! What stays, from the simplest lens on.
-const int FIXED[] = { K1, K2, TANGENT, K3, RATIONAL, PRISM, TILT, 0 };
+const int FIXED[] = { K1, K2, TANGENT, K3, K4, K5, K6, PRISM, TILT, 0 };
 const int FIRST = 2;                    // the search for windows and cameras begins with k1 and k2
 
 struct Candidate
 {
     int flags;                          //!< GLASS_FIX_...
     int coefficients;                   //!< that are free, of the camera with most
-    bool isFitted;
+    bool isRational;
+    bool isFitted;                      //!< if not to the end, too: left out, it would leave the choice to what is far worse
     RigStart fitted;
     std::vector<HeldOutPart> parts;
     std::vector<std::vector<double> > errors;   //!< of each image's points
     double squares;                     //!< of all parts
-    double excess, excessSigma;         //!< over the best one's
     FitOutcome determined;              //!< or which parameters are not
 };
 
@@ -58,6 +58,20 @@ int countFreeCoefficients(const Rig& rig, int flags)
     return most;
 }
 
+bool isRational(const Rig& rig, int flags)
+{
+    for (const Camera& camera : rig.cameras)
+    {
+        const std::vector<String> names = camera.lens().parameterNames();
+        const std::vector<bool> isFree = freeLens(camera, flags | GLASS_FREE_INTRINSICS);
+        const size_t k4 = std::find(names.begin(), names.end(), "k4") - names.begin();
+        const bool mayBe = std::find(names.begin(), names.end(), "k5") != names.end();     // a fisheye's k4 is the last
+        if (mayBe && isFree[k4])
+            return true;
+    }
+    return false;
+}
+
 std::vector<Candidate> candidatesOf(const Rig& rig, int flags)
 {
     std::vector<Candidate> candidates;
@@ -65,7 +79,7 @@ std::vector<Candidate> candidatesOf(const Rig& rig, int flags)
     {
         const int count = countFreeCoefficients(rig, flags | fixed);
         if (candidates.empty() || count > candidates.back().coefficients)
-            candidates.push_back({ fixed, count, false, RigStart(), {}, {}, 0, 0, 0, FitOutcome() });
+            candidates.push_back({ fixed, count, isRational(rig, flags | fixed), false, RigStart(), {}, {}, 0, FitOutcome() });
     }
     return candidates;
 }
@@ -88,6 +102,24 @@ RigViews sampled(const RigViews& views)
     return some;
 }
 
+double pointsOf(const std::vector<HeldOutPart>& parts)
+{
+    double points = 0;
+    for (const HeldOutPart& part : parts)
+        points += part.points;
+    return points;
+}
+
+//! Of squares(a) - squares(b). The parts are the same in all candidates, so their differences are what tells.
+double standardError(const Candidate& a, const Candidate& b)
+{
+    const double count = (double)a.parts.size(), mean = (a.squares - b.squares)/count;
+    double variance = 0;
+    for (size_t i = 0; i < a.parts.size(); i++)
+        variance += std::pow(a.parts[i].squares - b.parts[i].squares - mean, 2);
+    return std::sqrt(variance*count/std::max(1., count - 1));
+}
+
 class LensSelection
 {
 public:
@@ -108,23 +140,33 @@ public:
                 outcome = fitAll(RigStart(candidates_[first].fitted), first);
         if (!outcome.converged())
             return outcome;
-        compare();
-        return candidates_[chosen()].determined;
+        return choice().determined;
     }
     const std::vector<Candidate>& candidates() const { return candidates_; }
-    //! Index of the choice.
-    int chosen() const
+    const Candidate& choice() const
     {
-        const double most = std::pow(MOST_ABOVE_BEST, 2)*best().squares;
-        const auto enough = std::find_if(candidates_.begin(), candidates_.end(), [&](const Candidate& c)
-                                         { return c.isFitted && c.excess <= MOST_STANDARD_ERRORS*c.excessSigma && c.squares <= most; });
-        const Candidate& choice = enough == candidates_.end() ? best() : *enough;
-        // One that is simpler may miss that by a hair and be better.
-        return (int)(std::find_if(candidates_.begin(), candidates_.end(), [&](const Candidate& c)
-                                  { return c.isFitted && c.squares <= choice.squares; }) - candidates_.begin());
+        const Candidate* const polynomial = best(false), * const rational = best(true);
+        const bool isProven = !polynomial ||
+            (rational && polynomial->squares - rational->squares > standardError(*polynomial, *rational));
+        return isProven ? *rational : *polynomial;
+    }
+    //! Nothing if none was fitted.
+    const Candidate* best(bool isRational) const
+    {
+        const double PERFECT = 1e-6;    // px: all lenses that can are as good, and differ in their rounding
+        const Candidate* least = nullptr;
+        for (const Candidate& c : candidates_)
+            if (c.isFitted && c.isRational == isRational && (!least || c.squares < least->squares - PERFECT*PERFECT*pointsOf(c.parts)))
+                least = &c;
+        return least;
     }
 
 private:
+    int flagsOf(const Candidate& candidate) const
+    {
+        return task_.flags | candidate.flags | (hasWindow() ? 0 : GLASS_FIX_NORMAL);
+    }
+
     FitOutcome startOf(const Candidate& candidate, RigStart& start)
     {
         RigTask task = task_;
@@ -191,7 +233,7 @@ private:
     FitOutcome fit(Candidate& candidate, const RigStart& from)
     {
         const TermCriteria criteria(TermCriteria::COUNT + TermCriteria::EPS, 200, 1e-9);
-        const int flags = task_.flags | candidate.flags | (hasWindow() ? 0 : GLASS_FIX_NORMAL);
+        const int flags = flagsOf(candidate);
         RigStart start = from;
         for (int c = 0; c < start.rig.count(); c++)
         {
@@ -207,12 +249,10 @@ private:
         for (size_t i = 0; i < weights_.size(); i++)
             problem.setRootWeights((int)i, weights_[i]);
         FitOutcome outcome = problem.freedom() > 0 ? minimize(problem, criteria) : FitOutcome(FitOutcome::TOO_FEW_EQUATIONS);
-        candidate.isFitted = outcome.converged();
+        candidate.isFitted = false;
         if (!outcome.isUsable())
             return outcome;
         candidate.fitted = { problem.rig(), problem.poses() };
-        if (!outcome.converged())
-            return outcome;
         candidate.parts = heldOutErrors(problem);
         candidate.squares = 0;
         for (const HeldOutPart& part : candidate.parts)
@@ -250,29 +290,6 @@ private:
         return changed;
     }
 
-    const Candidate& best() const
-    {
-        return *std::min_element(candidates_.begin(), candidates_.end(), [](const Candidate& a, const Candidate& b)
-                                 { return a.isFitted && (!b.isFitted || a.squares < b.squares); });
-    }
-
-    //! The parts are the same in all candidates, so their differences are what tells.
-    void compare()
-    {
-        const std::vector<HeldOutPart>& least = best().parts;
-        for (Candidate& candidate : candidates_)
-        {
-            if (!candidate.isFitted)
-                continue;
-            const double count = (double)least.size();
-            candidate.excess = candidate.squares - best().squares;
-            double variance = 0;
-            for (size_t i = 0; i < least.size(); i++)
-                variance += std::pow(candidate.parts[i].squares - least[i].squares - candidate.excess/count, 2);
-            candidate.excessSigma = std::sqrt(variance*count/std::max(1., count - 1));
-        }
-    }
-
     const Rig& given_;
     RigTask task_;
     const bool isRobust_;
@@ -282,6 +299,8 @@ private:
 
 Mat scoresOf(const std::vector<Candidate>& candidates)
 {
+    const auto best = std::min_element(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b)
+                                       { return a.isFitted && (!b.isFitted || a.squares < b.squares); });
     Mat_<double> scores((int)candidates.size(), 4, std::numeric_limits<double>::quiet_NaN());
     for (int i = 0; i < scores.rows; i++)
     {
@@ -290,11 +309,9 @@ Mat scoresOf(const std::vector<Candidate>& candidates)
         scores(i, 1) = c.coefficients;
         if (!c.isFitted)
             continue;
-        double points = 0;
-        for (const HeldOutPart& part : c.parts)
-            points += part.points;
+        const double points = pointsOf(c.parts);
         scores(i, 2) = std::sqrt(c.squares/points);
-        scores(i, 3) = c.excessSigma/points/(2*std::max(scores(i, 2), DBL_MIN));
+        scores(i, 3) = standardError(c, *best)/points/(2*std::max(scores(i, 2), DBL_MIN));
     }
     return scores;
 }
@@ -338,7 +355,7 @@ int selectLensCoefficients(InputArrayOfArrays objectPoints, const std::vector<st
         outcome.view = seen[outcome.view];
     moved.moveBack(outcome);
     throwUnlessConverged(outcome, FitKind::CALIBRATION);
-    const Candidate& chosen = selection.candidates()[selection.chosen()];
+    const Candidate& chosen = selection.choice();
     for (int c = 0; c < count; c++)         // the windows stay as they were given
         cameraOf(cameras[c]).setLensParameters(chosen.fitted.rig.cameras[c].lensParameters());
     writeMat(scoresOf(selection.candidates()), scores);
