@@ -14,6 +14,7 @@ namespace tools {
 namespace {
 
 const int RICHEST = 8;                  // coefficients that are tried
+const int POLYNOMIAL = 5;               // at most; more are of a rational lens
 const int MOST_IMAGES = 60;             // of a camera: more decide nothing else
 const int MIN_HELD_OUT = 4;             // images; of fewer, parts of the target are held out (selectLensCoefficients)
 const int TWO = GLASS_FIX_TANGENT_DIST; // with four coefficients: k1 and k2
@@ -191,7 +192,7 @@ LensChoice chooseLens(const RigData& data, const RigOptions& options, bool robus
     if (fisheye.scores.empty())
         return choice;
     const bool better = choice.scores.empty()
-        || fisheye.lens().px < (choice.lens().coefficients == RICHEST ? AS_GOOD : CLEARLY_BETTER)*choice.lens().px;
+        || fisheye.lens().px < (choice.lens().coefficients > POLYNOMIAL ? AS_GOOD : CLEARLY_BETTER)*choice.lens().px;
     const int before = (int)choice.scores.size();
     choice.direct = fisheye.direct;
     choice.byImages = fisheye.byImages;

@@ -1505,8 +1505,9 @@ CV_EXPORTS_W double calibrateGlassRig(InputArrayOfArrays objectPoints,
 Candidates are the lens without coefficients, with k1, with k1 and k2, with p1 and p2 too, then k3, k4, k5, k6, and so on,
 as far as the cameras' lenses have them. Each is fitted, and each view is held out in turn: its error, its pose fitted to it,
 is that of the fit to the other views (to first order, without fitting again). If there are fewer than 4 views, eighths of each
-target are held out, their poses fitted to the others. The candidate with the least held-out error is chosen; with k4 to k6, a
-rational lens, only if it is better by a standard error of the difference. A fit that came to no end counts as it is.
+target are held out, their poses fitted to the others. The candidate with the least held-out error is chosen. Those with k4 to
+k6 have to be better by a standard error of the difference; of them the one with most coefficients that is not worse by as much
+is chosen. A fit that came to no end counts as it is.
 
 Give the images without the window, if there are enough of them (10 or more): only these, with cameras without a window, each
 view seen by one camera. Then no window is fitted. Otherwise give the images through the windows.

@@ -8,7 +8,8 @@ they are fitted to; held out they are worse from the number on that the data do 
 
 The best of them is chosen. The simplest that is not proven to be worse would fit about as well, but what it leaves out is then in the
 images, and in no standard deviation. Only the step to a rational lens, which bends without limit what no image shows, has to be proven:
-by one standard error, as Breiman et al. prune (Classification and Regression Trees, 1984). */
+by one standard error, as Breiman et al. prune (Classification and Regression Trees, 1984). What one of its coefficients leaves out another
+takes up, nearly, and at other depths not: of rational lenses the richest is chosen that is not proven to be worse. */
 
 #include "adjust/covariance.hpp"
 #include "adjust/held_out.hpp"
@@ -40,6 +41,7 @@ struct Candidate
     int coefficients;                   //!< that are free, of the camera with most
     bool isRational;
     bool isFitted;                      //!< if not to the end, too: left out, it would leave the choice to what is far worse
+    bool isConverged;
     RigStart fitted;
     std::vector<HeldOutPart> parts;
     std::vector<std::vector<double> > errors;   //!< of each image's points
@@ -79,7 +81,7 @@ std::vector<Candidate> candidatesOf(const Rig& rig, int flags)
     {
         const int count = countFreeCoefficients(rig, flags | fixed);
         if (candidates.empty() || count > candidates.back().coefficients)
-            candidates.push_back({ fixed, count, isRational(rig, flags | fixed), false, RigStart(), {}, {}, 0, FitOutcome() });
+            candidates.push_back({ fixed, count, isRational(rig, flags | fixed), false, false, RigStart(), {}, {}, 0, FitOutcome() });
     }
     return candidates;
 }
@@ -148,7 +150,17 @@ public:
         const Candidate* const polynomial = best(false), * const rational = best(true);
         const bool isProven = !polynomial ||
             (rational && polynomial->squares - rational->squares > standardError(*polynomial, *rational));
-        return isProven ? *rational : *polynomial;
+        return isProven ? richest(*rational) : *polynomial;
+    }
+    //! That is not proven to be worse.
+    const Candidate& richest(const Candidate& rational) const
+    {
+        const auto isAsGood = [&](const Candidate& c)
+        {
+            return c.isFitted && c.isConverged && c.squares - rational.squares <= standardError(c, rational);
+        };
+        const auto found = std::find_if(candidates_.rbegin(), candidates_.rend(), isAsGood);
+        return found != candidates_.rend() && found->coefficients > rational.coefficients ? *found : rational;
     }
     //! Nothing if none was fitted.
     const Candidate* best(bool isRational) const
@@ -250,6 +262,7 @@ private:
             problem.setRootWeights((int)i, weights_[i]);
         FitOutcome outcome = problem.freedom() > 0 ? minimize(problem, criteria) : FitOutcome(FitOutcome::TOO_FEW_EQUATIONS);
         candidate.isFitted = false;
+        candidate.isConverged = outcome.converged();
         if (!outcome.isUsable())
             return outcome;
         candidate.fitted = { problem.rig(), problem.poses() };
