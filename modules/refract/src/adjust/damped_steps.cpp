@@ -15,7 +15,7 @@ const double LEAST = 1e-18;         // of the damping: the weakest way of a stri
 const double MOST = 1e16;
 const double FIRST_AFTER_FAILURE = 1e-8;
 const double LEFT_BY_POINTS = 1e-12;        // of the squares, by steps of their own (StepControl)
-const double LEFT_OF_NOISE = 5e-7;          // of the variance; a minimum is where 1e-6 is left
+const double LEFT_OF_NOISE = 5e-7;          // of the variance; a minimum is where 1e-6 is left, or what is not seen
 
 //! @param ratio of the gain to what was foretold
 double dampingAfter(double damping, double ratio)
@@ -26,9 +26,9 @@ double dampingAfter(double damping, double ratio)
 
 } // namespace
 
-double DampedSteps::roundingOf(double squares, double equations, double rounding)
+double DampedSteps::unseenOf(double squares, double equations, double rounding)
 {
-    return 2*rounding*std::sqrt(squares) + rounding*rounding*equations;
+    return 2*rounding*std::sqrt(squares) + rounding*rounding*equations + LEFT_BY_POINTS*squares;
 }
 
 void DampedSteps::run(ReducedCost& cost)
@@ -43,9 +43,9 @@ void DampedSteps::run(ReducedCost& cost)
         double foretold;
         cost.setStep(dampedStep(cost.information(), damping, foretold));
         // Too little to matter, or to be seen: of exact data, also of those that were printed with some digits, it is rounding.
-        const double lost = roundingOf(squares, equations, rounding);
+        const double unseen = unseenOf(squares, equations, rounding);
         const double negligible = std::max(leastGain, std::min(std::max(0.1*change, LEFT_BY_POINTS), LEFT_OF_NOISE/equations));
-        if (foretold <= std::max(squares*negligible, lost))
+        if (foretold <= std::max(squares*negligible, unseen))
         {
             cost.restore();
             isConverged = damping <= WEAK;

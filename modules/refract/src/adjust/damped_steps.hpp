@@ -21,8 +21,8 @@ struct DampedSteps
     double leastGain = 0;   //!< of the cost, relative: less is worth no step; 0: down to what cannot matter
     double rounding = 1e-12;        //!< of a residual, pixels
 
-    //! What rounding changes of so many squares.
-    static double roundingOf(double squares, double equations, double rounding);
+    //! What rounding changes of so many squares, and points leave that are optimised by themselves.
+    static double unseenOf(double squares, double equations, double rounding);
     //! From the state of the cost, which was linearised there. The state is where they end.
     void run(ReducedCost& cost);
 };

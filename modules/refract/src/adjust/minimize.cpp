@@ -295,15 +295,15 @@ bool Minimization::holdAtBounds()
     return changed;
 }
 
-//! The step that is left is far below the uncertainty of what it would move, or what rounding hides.
+//! The step that is left is far below the uncertainty of what it would move, or what is not seen.
 bool Minimization::isAtMinimum() const
 {
     const double NEGLIGIBLE = 1e-3;     // standard deviations
     const double LEAST_SIGMA = problem_.hasScene() ? 1e-3 : 1e-6;   // px: perfect data end in rounding errors
     const double variance = problem_.freedom() > 0 ? problem_.squaredError()/problem_.freedom() : 0;
-    const double decrement = newtonDecrement(cost_->information()), hidden = problem_.hasScene() ?
-        DampedSteps::roundingOf(problem_.squaredError(), problem_.equationCount(), roundingOfPixels(problem_)) : 0;
-    return decrement < NEGLIGIBLE*std::max(std::sqrt(variance), LEAST_SIGMA) || decrement*decrement < hidden;
+    const double decrement = newtonDecrement(cost_->information()), unseen = problem_.hasScene() ?
+        DampedSteps::unseenOf(problem_.squaredError(), problem_.equationCount(), roundingOfPixels(problem_)) : 0;
+    return decrement < NEGLIGIBLE*std::max(std::sqrt(variance), LEAST_SIGMA) || decrement*decrement < unseen;
 }
 
 /** Along curved valleys (distance against focal length) the steps of Levenberg and Marquardt creep, near the edge of the
