@@ -28,12 +28,11 @@ struct Scene
 
 Mat pictureOf(Wand& wand, int camera, int moment, const Scene& scene, Mat image)
 {
-    const int FINE = 5;
     const drawn_balls::View view = {wand.truth.cameras[camera], Matx33d(wand.truth.Rs[camera]), Vec3d(wand.truth.Ts[camera])};
     for (int end : {0, 1})
         if (!(scene.hidden && moment % scene.hidden == 0 && end && camera == 1))
             drawn_balls::draw({wand.points[2*moment + end], end ? scene.radiusB : scene.radiusA, scene.level, scene.shading}, view,
-                              scene.blur, image, FINE);
+                              scene.blur, image);
     return drawn_balls::exposed(image, scene.noise, wand.random);
 }
 
@@ -165,6 +164,8 @@ TEST_CASE("refract_bundle calibrates a rig from images of a wand with two balls"
     CHECK(ratio.value() > 0.4);             // of few wands, whose numbers share errors
     CHECK(ratio.value() < 1.4);
     CHECK(ratio.worst < 5);
+    CHECK(ofPixels.value() > 0.9);
+    CHECK(ofPixels.value() < 1.1);
 }
 
 TEST_CASE("Of a wand's images what is hidden, mirrored or not clear is left out and counted, and points.csv can be read again",

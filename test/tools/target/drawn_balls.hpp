@@ -27,19 +27,25 @@ struct View
     cv::Vec3d T;
 };
 
-//! Where rays of the camera first meet the ball, from its centre, in its radii and the frame of camera 1; NaN where they do not.
-inline std::vector<cv::Vec3d> touched(const Ball& ball, const View& view, const std::vector<cv::Point2d>& pixels)
+//! Of a ray and a ball, in the ball's radii and the frame of camera 1.
+struct Sight
+{
+    double miss;                        //!< distance of the ray from the centre
+    cv::Vec3d point;                    //!< where the ray first meets the ball, or is nearest to it; from the centre
+};
+
+inline std::vector<Sight> sightsOf(const Ball& ball, const View& view, const std::vector<cv::Point2d>& pixels)
 {
     std::vector<cv::Point3d> origins, directions;
     cv::refract::refractiveUnprojectPoints(pixels, origins, directions, view.camera);
     const cv::Vec3d center = view.R*cv::Vec3d(ball.center) + view.T;
-    std::vector<cv::Vec3d> result;
+    std::vector<Sight> result;
     for (size_t i = 0; i < pixels.size(); i++)
     {
-        const cv::Vec3d d(directions[i]), from = cv::Vec3d(origins[i]) - center;
+        const cv::Vec3d d(directions[i]), from = (cv::Vec3d(origins[i]) - center)/ball.radius;
         const double along = -d.dot(from), miss = cv::norm(from + along*d);
-        const double s = along - std::sqrt(ball.radius*ball.radius - miss*miss);        // NaN beside it
-        result.push_back(view.R.t()*(from + s*d)/ball.radius);
+        const double s = along - std::sqrt(std::max(0., 1 - miss*miss));
+        result.push_back({miss, view.R.t()*(from + s*d)});
     }
     return result;
 }
@@ -55,42 +61,59 @@ inline cv::Mat tank(cv::Size size, double from, double to, const std::vector<cv:
     return image;
 }
 
-//! Adds a ball to an image without noise. @param fine places in a pixel, each way
-inline void draw(const Ball& ball, const View& view, double blur, cv::Mat& image, int fine = 8)
+//! How much of each place of a grid is within the ball: the edge goes through places, too.
+inline cv::Mat shareOf(const cv::Mat& miss)
+{
+    cv::Mat dx, dy, slope;
+    cv::Sobel(miss, dx, CV_32F, 1, 0, 3, 1./8);
+    cv::Sobel(miss, dy, CV_32F, 0, 1, 3, 1./8);
+    cv::magnitude(dx, dy, slope);
+    return cv::min(cv::max(0.5 + (1 - miss)/slope, 0), 1);
+}
+
+//! The part of an image that may show a ball; empty: none.
+inline cv::Rect partOf(const Ball& ball, const View& view, double blur)
 {
     const int RIM = 6;
-    std::vector<cv::Point2d> middle, edge;
     const cv::Mat rvec = cv::Mat(view.R), tvec = cv::Mat(view.T);
+    std::vector<cv::Point2d> middle;
     cv::refract::refractiveProjectPoints(std::vector<cv::Point3d>{ball.center, ball.center + cv::Point3d(ball.radius, 0, 0)}, rvec, tvec,
                                          view.camera, middle);
     if (std::isnan(middle[0].x) || std::isnan(middle[1].x))
-        return;
+        return cv::Rect();
     const int reach = cvCeil(1.3*cv::norm(middle[1] - middle[0])) + RIM + cvCeil(4*blur);
-    const cv::Rect part(cvRound(middle[0].x) - reach, cvRound(middle[0].y) - reach, 2*reach + 1, 2*reach + 1);
-    cv::Mat share(part.size()*fine, CV_32F, cv::Scalar(0)), light = share.clone();
-    for (int y = 0; y < share.rows; y++)
+    return cv::Rect(cvRound(middle[0].x) - reach, cvRound(middle[0].y) - reach, 2*reach + 1, 2*reach + 1);
+}
+
+//! Adds a ball to an image without noise. @param fine places in a pixel, each way
+inline void draw(const Ball& ball, const View& view, double blur, cv::Mat& image, int fine = 4)
+{
+    const cv::Rect part = partOf(ball, view, blur), inside = part & cv::Rect(cv::Point(), image.size());
+    if (inside.empty())
+        return;
+    cv::Mat miss(part.size()*fine, CV_32F), light = miss.clone();
+    for (int y = 0; y < miss.rows; y++)
     {
         std::vector<cv::Point2d> pixels;
-        for (int x = 0; x < share.cols; x++)
+        for (int x = 0; x < miss.cols; x++)
             pixels.emplace_back(part.x + (x + 0.5)/fine - 0.5, part.y + (y + 0.5)/fine - 0.5);
-        const std::vector<cv::Vec3d> out = touched(ball, view, pixels);
-        for (int x = 0; x < share.cols; x++)
+        const std::vector<Sight> sights = sightsOf(ball, view, pixels);
+        for (int x = 0; x < miss.cols; x++)
         {
-            if (std::isnan(out[x][0]))
-                continue;
-            share.at<float>(y, x) = 1;
-            light.at<float>(y, x) = (float)(ball.level - ball.shading*0.5*(1 + (out[x][0] + out[x][1])*M_SQRT1_2));
+            const cv::Vec3d& at = sights[x].point;
+            miss.at<float>(y, x) = (float)sights[x].miss;
+            light.at<float>(y, x) = (float)(ball.level - ball.shading*0.5*(1 + (at[0] + at[1])*M_SQRT1_2));
         }
     }
+    cv::Mat share = shareOf(miss);
+    light = light.mul(share);
     for (cv::Mat* one : {&share, &light})
     {
         cv::GaussianBlur(*one, *one, cv::Size(), blur*fine);
         cv::resize(*one, *one, part.size(), 0, 0, cv::INTER_AREA);
     }
-    const cv::Rect inside = part & cv::Rect(cv::Point(), image.size());
     const cv::Rect there(inside.tl() - part.tl(), inside.size());
-    if (inside.area() > 0)
-        image(inside) = image(inside).mul(1 - share(there)) + light(there);
+    image(inside) = image(inside).mul(1 - share(there)) + light(there);
 }
 
 inline cv::Mat exposed(const cv::Mat& image, double noise, scenes::Random& random)

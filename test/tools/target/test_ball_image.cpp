@@ -7,13 +7,31 @@
 
 #include <catch2/catch.hpp>
 #include <opencv2/calib3d.hpp>
+#include <opencv2/imgcodecs.hpp>
 #include <iostream>
 
 using namespace cv;
 using namespace cv::refract;
 using namespace tools;
 
-TEST_CASE("The middles of balls' images are as far off as is stated, small or large, light or dark, sharp or not", "[target][balls]")
+namespace {
+
+//! What a camera shows of one ball at a time.
+struct Shot
+{
+    double radius, blur, shading = 0;       //!< px, grey levels
+    bool bright = true;
+    int quality = 0;                        //!< of JPEG; 0: not compressed
+};
+
+struct Errors
+{
+    double squares = 0, off = 0, std = 0;   //!< of errors over what is stated; px^2; px
+    int found = 0;
+    double ratio() const { return std::sqrt(squares/found); }
+};
+
+Errors errorsOf(const Shot& shot, int trials, scenes::Random& random)
 {
     const Size size(180, 180);
     const Matx33d K(3000, 0, 89.5, 0, 3000, 89.5, 0, 0, 1);
@@ -22,52 +40,90 @@ TEST_CASE("The middles of balls' images are as far off as is stated, small or la
     Matx33d R;
     Rodrigues(Vec3d(-0.4, 0.5, 0), R);              // light comes from the left, above and behind
     const drawn_balls::View view = {camera, R, Vec3d()};
-    scenes::Random random(4540);
-    const int trials = scenes::trials(12);
-    double all = 0;
-    int configurations = 0;
+    const auto taken = [&](const Mat& image) {
+        const Mat noisy = drawn_balls::exposed(image, 2, random);
+        std::vector<uchar> bytes;
+        if (!shot.quality)
+            return noisy;
+        imencode(".jpg", noisy, bytes, {IMWRITE_JPEG_QUALITY, shot.quality});
+        return imdecode(bytes, IMREAD_GRAYSCALE);
+    };
+    const Mat still = drawn_balls::tank(size, shot.bright ? 25 : 190, shot.bright ? 45 : 210);
+    std::vector<Mat> others;
+    for (int i = 0; i < 15; i++)
+        others.push_back(taken(still));
+    const Mat background = stillBackground(others);
+    Errors errors;
+    for (int trial = 0; trial < trials; trial++)
+    {
+        const Point2d at(random.uniform(82, 97), random.uniform(82, 97));
+        const Vec3d ray = K.inv()*Vec3d(at.x, at.y, 1);
+        Mat image = still.clone();
+        drawn_balls::draw({Point3d(R.t()*ray*1000), shot.radius/3, shot.bright ? 200. : 90., shot.bright ? shot.shading : 0.5*shot.shading},
+                          view, shot.blur, image);
+        const std::vector<BallImage> balls = ballsIn(taken(image), background, shot.bright);
+        if (balls.size() != 1)
+            continue;
+        const Point2d error = balls[0].outline.centre - at;
+        errors.squares += error.dot(error)/(2*balls[0].std*balls[0].std);
+        errors.off += error.dot(error)/2;
+        errors.std += balls[0].std;
+        errors.found++;
+    }
+    std::cout << "[numbers] balls of " << shot.radius << " px, blur " << shot.blur << ", shading " << shot.shading << ", "
+              << (shot.bright ? "bright" : "dark") << ", quality " << shot.quality << ", seed " << scenes::seed() << ": " << errors.found
+              << " of " << trials << " found, " << std::sqrt(errors.off/errors.found) << " px off, stated " << errors.std/errors.found
+              << ", ratio " << errors.ratio() << std::endl;
+    return errors;
+}
+
+//! Of all of these, each alike.
+double ratioOf(const std::vector<Shot>& shots, int trials, unsigned salt)
+{
+    scenes::Random random(salt);
+    double squares = 0;
+    for (const Shot& shot : shots)
+    {
+        const Errors errors = errorsOf(shot, trials, random);
+        CAPTURE(shot.radius, shot.blur, shot.shading, shot.bright, shot.quality);
+        CHECK(errors.found == trials);
+        squares += errors.squares/errors.found/(double)shots.size();
+    }
+    std::cout << "[numbers] all balls, seed " << scenes::seed() << ": error over stated " << std::sqrt(squares) << std::endl;
+    return std::sqrt(squares);
+}
+
+} // namespace
+
+TEST_CASE("The middles of balls' images are as far off as is stated, small or large, light or dark, sharp or not", "[target][balls]")
+{
+    std::vector<Shot> shots;
     for (double radius : {3., 5., 10., 22.})
         for (double blur : {0.6, 1.2})
             for (double shading : {0., 60.})
                 for (bool bright : {true, false})
-                {
-                    double squares = 0, std = 0, off = 0;
-                    int count = 0;
-                    const Mat still = drawn_balls::tank(size, bright ? 25 : 190, bright ? 45 : 210);
-                    std::vector<Mat> others;
-                    for (int i = 0; i < 15; i++)
-                        others.push_back(drawn_balls::exposed(still, 2, random));
-                    const Mat background = stillBackground(others);
-                    for (int trial = 0; trial < trials; trial++)
-                    {
-                        const Point2d at(random.uniform(82, 97), random.uniform(82, 97));
-                        const Vec3d ray = K.inv()*Vec3d(at.x, at.y, 1);
-                        const drawn_balls::Ball ball = {Point3d(R.t()*ray*1000), radius/3, bright ? 200. : 90.,
-                                                        bright ? shading : 0.5*shading};
-                        Mat image = still.clone();
-                        drawn_balls::draw(ball, view, blur, image);
-                        const std::vector<BallImage> found = ballsIn(drawn_balls::exposed(image, 2, random), background, bright);
-                        if (found.size() != 1)
-                            continue;
-                        const Point2d error = found[0].outline.centre - at;
-                        squares += error.dot(error)/(2*found[0].std*found[0].std);
-                        off += error.dot(error)/2;
-                        std += found[0].std;
-                        count++;
-                    }
-                    const double ratio = std::sqrt(squares/count);
-                    std::cout << "[numbers] balls of " << radius << " px, blur " << blur << ", shading " << shading << ", "
-                              << (bright ? "bright" : "dark") << ", seed " << scenes::seed() << ": " << count << " of " << trials
-                              << " found, " << std::sqrt(off/count) << " px off, stated " << std/count << ", ratio " << ratio << std::endl;
-                    CAPTURE(radius, blur, shading, bright);
-                    CHECK(count == trials);
-                    all += ratio*ratio;
-                    configurations++;
-                }
-    const double ratio = std::sqrt(all/configurations);
-    std::cout << "[numbers] all balls, seed " << scenes::seed() << ": error over stated " << ratio << std::endl;
+                    shots.push_back({radius, blur, shading, bright});
+    const double ratio = ratioOf(shots, scenes::trials(12), 4540);
     CHECK(ratio > 0.9);
     CHECK(ratio < 1.1);
+}
+
+TEST_CASE("The noise that compressed images share between pixels is in the std of a ball's middle", "[target][balls]")
+{
+    std::vector<Shot> shots;
+    for (double radius : {4., 8., 20.})
+        for (int quality : {95, 88})
+            shots.push_back({radius, 0.8, 0, true, quality});
+    const double ratio = ratioOf(shots, scenes::trials(60), 4542);
+    CHECK(ratio > 0.9);
+    CHECK(ratio < 1.1);
+}
+
+TEST_CASE("A ball that is blurred to a spot without an outline is none", "[target][balls]")
+{
+    scenes::Random random(4543);
+    CHECK(errorsOf({2.5, 2.5}, 10, random).found == 0);
+    CHECK(errorsOf({2.5, 1.2}, 10, random).found == 10);
 }
 
 TEST_CASE("What stands still and what is not round is no ball", "[target][balls]")

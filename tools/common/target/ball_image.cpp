@@ -120,6 +120,7 @@ public:
     }
 
     int pixels() const { return part_.area(); }
+    int rows() const { return part_.height; }
     DotImage outline(const Parameters& p) const
     {
         return {origin_ + Point2d(p[0], p[1]), Matx22d(p[2], p[3], p[3], p[4])};
@@ -163,6 +164,7 @@ private:
 //! The normal equations about some values, by differences.
 struct Normal
 {
+    Mat_<double> at, J;             //!< residuals and their derivatives, a row for each pixel
     Matx<double, BallModel::COUNT, BallModel::COUNT> H;
     BallModel::Parameters g;
     double squares;
@@ -170,7 +172,8 @@ struct Normal
     //! @param steps of the differences; a parameter without one stays as it is
     Normal(const BallModel& model, const BallModel::Parameters& p, const BallModel::Parameters& steps)
     {
-        Mat_<double> at, J(model.pixels(), BallModel::COUNT, 0.), there;
+        Mat_<double> there;
+        J = Mat_<double>(model.pixels(), BallModel::COUNT, 0.);
         model.residuals(p, at);
         for (int k = 0; k < BallModel::COUNT; k++)
         {
@@ -221,10 +224,37 @@ bool fitted(const BallModel& model, BallModel::Parameters& p, Normal& normal, co
     return true;
 }
 
+/** Std of a coordinate of the centre, of noise that near pixels may have in common: what compresses or sharpens an image ties them. It
+is taken to be the same all over the part. Residuals have less of it than pixels, by what the fit took. */
+double centreStd(const BallModel& model, const Normal& normal)
+{
+    const int FAR = 3;                  // pixels, over which noise is tied
+    const double white = normal.squares/(model.pixels() - BallModel::COUNT);
+    const Mat_<double> residuals = normal.at.reshape(1, model.rows());
+    std::vector<Mat_<double>> slopes, moves;        // of each parameter: of pixels by it, of it by pixels
+    for (int k = 0; k < BallModel::COUNT; k++)
+    {
+        slopes.push_back(Mat(normal.J.col(k).clone()).reshape(1, model.rows()));
+        moves.push_back(Mat(normal.J*Mat(normal.H.inv(DECOMP_SVD)).col(k)).reshape(1, model.rows()));
+    }
+    double variance = 0.;
+    for (int y = -FAR; y <= FAR; y++)
+        for (int x = -FAR; x <= FAR; x++)
+        {
+            const Rect all(Point(), residuals.size()), from = all & (all - Point(x, y)), to = from + Point(x, y);
+            const auto pairs = [&](const Mat_<double>& a, const Mat_<double>& b) { return a(from).dot(b(to)); };
+            double common = pairs(residuals, residuals);
+            for (int k = 0; k < BallModel::COUNT; k++)
+                common += white*pairs(moves[k], slopes[k]);
+            variance += common/from.area()*0.5*(pairs(moves[0], moves[0]) + pairs(moves[1], moves[1]));
+        }
+    return std::sqrt(variance);
+}
+
 //! The outline that explains the pixels; false: none does.
 bool refine(const Mat& grey, const Mat& background, const Candidate& candidate, bool bright, BallImage& ball)
 {
-    const double MOVED = 0.7, RESIZED = 1.8, BLURRED = 1.;      // of a radius, at most
+    const double MOVED = 0.7, RESIZED = 1.8, BLURRED = 0.6;     // of a radius, at most; more blurred a shaded ball is one that moved
     const double AMISS = 0.1;                                   // of the contrast, RMS
     const double SHARP = 4.;                                    // blurs in a radius, where the height can be told from them
     const DotImage& start = candidate.dot;
@@ -248,8 +278,7 @@ bool refine(const Mat& grey, const Mat& background, const Candidate& candidate, 
     ball.outline = model.outline(p);
     ball.contrast = (bright ? 1 : -1)*(p[7] - p[6] - background.at<uchar>(Point(cvRound(start.centre.x), cvRound(start.centre.y))));
     const double variance = normal.squares/(model.pixels() - BallModel::COUNT);
-    const auto covariance = normal.H.inv(DECOMP_SVD)*variance;
-    ball.std = std::sqrt(0.5*(covariance(0, 0) + covariance(1, 1)));
+    ball.std = centreStd(model, normal);
     const double growth = radiusOf(ball.outline)/radius;
     return start.out(ball.outline.centre) < MOVED && growth < RESIZED && growth > 1/RESIZED && p[5] < BLURRED*radius*growth
         && ball.contrast > 0 && std::sqrt(variance) < AMISS*ball.contrast && ball.std > 0 && std::isfinite(ball.std);

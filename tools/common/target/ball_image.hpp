@@ -12,7 +12,7 @@ namespace tools {
 struct BallImage
 {
     DotImage outline;           //!< the middle of its ellipse is not quite where the ball's centre is seen
-    double std;                 //!< of a coordinate of that middle, px, as the noise of the image has it
+    double std;                 //!< of a coordinate of that middle, px, by the noise round it
     double contrast;            //!< grey levels between ball and background
 };
 
