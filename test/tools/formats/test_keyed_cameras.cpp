@@ -23,7 +23,9 @@ TEST_CASE("A camera matrix and coefficients are read by any of their usual names
     for (const char* matrix : {"camera_matrix", "K", "mtx", "cameraMatrix"})
         for (const char* distortion : {"distortion_coefficients", "dist", "D", "distCoeffs", "dist_coeff"})
             requireSame(rigOf(f, std::string("{\"") + matrix + "\": " + K + ", \"" + distortion + "\": " + D + "}"));
+    requireSame(rigOf(f, "{\"K\": " + K + ", \"\\\"NaN\": \"NaN\", \"rms\": NaN, \"D\": " + D + "}"));       // as Python writes it
     requireSame(rigOf(f, "mtx: " + K + "\ndist: " + D + "\n"));
+    requireSame(rigOf(f, "mtx: " + K + "\rdist: " + D + "\r"));
     requireSame(rigOf(f, "# made by hand\nmtx:\n- - 1210.5\n  - 0.0\n  - 639.25\n- - 0.0\n  - 1190.25\n  - 481.5\n- [0, 0, 1]\n"
                         "dist:\n  - -0.11\n  - 0.07   # k2\n  - 1e-3\n  - -0.002\n  - 0.013\n"));
     const ForeignRig below = rigOf(f, "{\"cameras\": [{\"name\": \"a\", \"K\": " + K + ", \"dist\": " + D
@@ -156,7 +158,9 @@ TEST_CASE("What a file of names and values cannot mean is refused in a sentence"
           "distortion_coefficients, distCoeffs, D or dist; of a lens without distortion five zeros");
     CHECK_THAT(says("K: " + K + "\nD: [0.1, 0.2, 0.3, 0.4]\n"), Catch::Contains("add distortion_model"));
     CHECK_THAT(says("K: [[1, 2], [3, 4]]\nD: [0]\n"), Catch::Contains("its K must have 9 numbers, and has 4"));
-    CHECK_THAT(says("K: " + K + "\nD: none\n"), Catch::Contains("its D are no numbers"));
+    CHECK_THAT(says("K: " + K + "\nD: none\n"), Catch::Contains("its D are not all numbers"));
+    CHECK_THAT(says("{\"K\": [[NaN, 0, 50], [0, 100, 50], [0, 0, 1]], \"D\": [0]}"), Catch::Contains("its K must have 9 numbers"));
+    CHECK_THAT(says("{\"K\": " + K + ", \"D\": [0, -Infinity]}"), Catch::Contains("its D are not all numbers"));
     CHECK_THAT(says("K: [[100, 7, 50], [0, 100, 50], [0, 0, 1]]\nD: [0, 0, 0, 0, 0]\n"), Catch::Contains("its lens cannot be one"));
     CHECK_THAT(says("name: 5\nother: [1, 2]\n"), Catch::Contains("looks like YAML, but there is no camera in it"));
     CHECK_THAT(says("{\"cameraType\": 0, \"distortionCoeff\": [-0.11, 0."), Catch::Contains("looks like JSON, but parse error at line 1"));

@@ -3,6 +3,7 @@
 
 #include "console/csv.hpp"
 #include "console/failure.hpp"
+#include "console/lines.hpp"
 #include "console/numbers.hpp"
 #include "console/utf8.hpp"
 
@@ -70,14 +71,12 @@ std::string joined(const std::vector<std::string>& names)
 //! One line; the first one without the mark with which some programs begin UTF-8.
 bool readLine(std::istream& in, std::string& line, int number)
 {
-    if (!std::getline(in, line))
+    if (!takeLine(in, line))
         return false;
     if (number == 1 && line.compare(0, 3, "\xEF\xBB\xBF") == 0)
         line.erase(0, 3);
     return true;
 }
-
-bool isNothing(const std::string& line) { return trimmed(line).empty() || trimmed(line)[0] == '#'; }
 
 char separatorOf(const std::string& heading)
 {
@@ -87,6 +86,22 @@ char separatorOf(const std::string& heading)
     return ',';
 }
 
+//! Names of columns are told from each other whatever their case is. @param known names, spelt as they are asked for
+std::vector<std::string> namesOf(const std::string& heading, const std::vector<std::string>& known)
+{
+    std::vector<std::string> names = cellsOf(heading, separatorOf(heading));
+    for (std::string& name : names)
+    {
+        name = inLowerCase(name);
+        for (const std::string& one : known)
+            if (inLowerCase(one) == name)
+                name = one;
+    }
+    return names;
+}
+
+bool isNothing(const std::string& line) { return trimmed(line).empty() || trimmed(line)[0] == '#'; }
+
 } // namespace
 
 std::vector<std::string> headingOf(const std::string& path)
@@ -94,7 +109,7 @@ std::vector<std::string> headingOf(const std::string& path)
     std::ifstream in(path);
     std::string line;
     for (int number = 1; readLine(in, line, number) && isNothing(line); number++) {}
-    return cellsOf(line, separatorOf(line));
+    return namesOf(line, {});
 }
 
 CsvTable::CsvTable(const std::string& path, const std::vector<std::string>& required, const std::string& what) : path_(path)
@@ -123,7 +138,7 @@ CsvTable::CsvTable(const std::string& path, const std::vector<std::string>& requ
             continue;
         }
         separator = separatorOf(line);
-        names_ = cellsOf(line, separator);
+        names_ = namesOf(line, required);
         for (const std::string& name : required)
             if (find(name) < 0)
                 throw Failure("'" + path + "' line " + std::to_string(number) + ": there is no column '" + name + "': " + what

@@ -10,9 +10,9 @@
 
 namespace tools {
 
-/** A table from a text file with commas between the cells: a line of column names, then one row a line. Quotes as spreadsheets
-write them; empty lines and those with '#' first are skipped; where the heading has semicolons and no comma, or tabs and none of these,
-they separate, and numbers may have decimal commas: not 1,234 where others have decimal points.
+/** A table from a text file with commas between the cells: a line of column names, in any case, then one row a line. Quotes as
+spreadsheets write them; empty lines and those with '#' first are skipped; where the heading has semicolons and no comma, or tabs and none
+of these, they separate, and numbers may have decimal commas: not 1,234 where others have decimal points.
 Everything throws Failure that names file and line. */
 class CsvTable
 {
@@ -51,7 +51,7 @@ private:
     std::vector<Row> rows_;
 };
 
-//! The column names that a file begins with; an empty one: there is nothing to read.
+//! The column names that a file begins with, in lower case; an empty one: there is nothing to read.
 std::vector<std::string> headingOf(const std::string& path);
 
 //! A cell of a table with commas between; blanks are quoted too, for readers that split at them.

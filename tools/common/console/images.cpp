@@ -4,6 +4,7 @@
 #include "console/images.hpp"
 #include "console/failure.hpp"
 #include "console/exif.hpp"
+#include "console/utf8.hpp"
 
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -156,9 +157,7 @@ bool isNamedAsVideo(const std::string& path)
 {
     static const std::set<std::string> VIDEOS = {".avi", ".mp4", ".m4v", ".mov", ".mkv", ".webm", ".mpg", ".mpeg", ".ts", ".wmv",
                                                  ".flv", ".ogv", ".mjpg", ".mjpeg", ".y4m", ".264", ".h264", ".265", ".h265"};
-    std::string extension = fs::path(path).extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
-    return VIDEOS.count(extension) > 0;
+    return VIDEOS.count(inLowerCase(fs::path(path).extension().string())) > 0;
 }
 
 std::vector<std::string> matchingFiles(const std::string& pattern)

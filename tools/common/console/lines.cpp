@@ -73,6 +73,26 @@ std::vector<std::string> firstOf(const std::vector<std::string>& lines, size_t c
     return first;
 }
 
+bool takeLine(std::istream& in, std::string& line)
+{
+    const int END = std::istream::traits_type::eof();
+    line.clear();
+    if (!in || in.peek() == END)
+        return false;
+    std::streambuf& bytes = *in.rdbuf();
+    for (int c = bytes.sbumpc(); c != END && c != '\n'; c = bytes.sbumpc())
+    {
+        if (c == '\r')
+        {
+            if (bytes.sgetc() == '\n')
+                bytes.sbumpc();
+            break;
+        }
+        line += (char)c;
+    }
+    return true;
+}
+
 bool errorsFollowOutput()
 {
     struct stat out, err;

@@ -4,6 +4,7 @@
 #ifndef REFRACT_TOOLS_LINES_HPP
 #define REFRACT_TOOLS_LINES_HPP
 
+#include <istream>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,9 @@ std::vector<std::string> brokenInto(const std::string& text, size_t columns, con
 
 //! The first of these lines; where some are missing the last ends with "...".
 std::vector<std::string> firstOf(const std::vector<std::string>& lines, size_t count, size_t columns);
+
+//! One line of a file, whichever of LF, CR LF or CR alone ends it; false: there is none.
+bool takeLine(std::istream& in, std::string& line);
 
 //! What goes to stderr comes out where stdout does: on one terminal, in one file, into one pipe.
 bool errorsFollowOutput();

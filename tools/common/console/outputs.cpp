@@ -6,6 +6,7 @@
 #include "console/file_lock.hpp"
 #include "console/file_output.hpp"
 #include "console/images.hpp"
+#include "console/utf8.hpp"
 
 #include <opencv2/imgcodecs.hpp>
 #include <algorithm>
@@ -31,9 +32,7 @@ std::string canonical(const std::string& path)
 
 std::string extensionOf(const std::string& path)
 {
-    std::string extension = fs::path(path).extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
-    return extension;
+    return inLowerCase(fs::path(path).extension().string());
 }
 
 void checkKind(const Output& output)

@@ -3,7 +3,9 @@
 
 #include "console/point_file.hpp"
 #include "console/failure.hpp"
+#include "console/lines.hpp"
 #include "console/numbers.hpp"
+#include "console/utf8.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -37,7 +39,7 @@ std::vector<std::string> cellsOf(const std::string& line)
 size_t columnOf(const std::vector<std::string>& names, const std::string& name)
 {
     return std::find_if(names.begin(), names.end(),
-                        [&](const std::string& n) { return n == name || n == name + "1"; }) - names.begin();
+                        [&](const std::string& n) { return inLowerCase(n) == name || inLowerCase(n) == name + "1"; }) - names.begin();
 }
 
 } // namespace
@@ -51,7 +53,7 @@ std::vector<cv::Point2d> readPixels(const std::string& path)
     size_t u = 0, v = 1;
     std::string line;
     bool first = true;
-    for (int number = 1; std::getline(in, line); number++)
+    for (int number = 1; takeLine(in, line); number++)
     {
         const std::vector<std::string> cells = cellsOf(line);
         if (cells.empty() || cells[0][0] == '#')

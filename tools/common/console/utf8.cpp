@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "console/utf8.hpp"
+
+#include <algorithm>
 #include <cstdint>
 
 namespace tools {
@@ -29,6 +31,12 @@ size_t lengthOfCharacter(const std::string& text, size_t at)
 }
 
 } // namespace
+
+std::string inLowerCase(std::string text)
+{
+    std::transform(text.begin(), text.end(), text.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c; });
+    return text;
+}
 
 bool isUtf8(const std::string& text)
 {

@@ -11,6 +11,9 @@ namespace tools {
 
 bool isUtf8(const std::string& text);
 
+//! The letters of ASCII; others stay as they are.
+std::string inLowerCase(std::string text);
+
 //! With a replacement character for each byte that is none of a character: for names of files, which may be any bytes.
 std::string toUtf8(const std::string& text);
 

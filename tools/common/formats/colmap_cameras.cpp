@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "console/failure.hpp"
+#include "console/lines.hpp"
 #include "formats/bytes.hpp"
 #include "formats/colmap_model.hpp"
 #include "formats/foreign_file.hpp"
@@ -38,7 +39,7 @@ ForeignRig readColmapText(const ForeignFile& file)
 {
     ForeignRig rig;
     std::istringstream in(file.bytes);
-    for (std::string line; std::getline(in, line); )
+    for (std::string line; takeLine(in, line); )
     {
         if (line.find_first_not_of(" \t\r") == std::string::npos || line[line.find_first_not_of(" \t\r")] == '#')
             continue;

@@ -4,6 +4,7 @@
 #include "formats/foreign_rig.hpp"
 #include "console/failure.hpp"
 #include "console/images.hpp"
+#include "console/lines.hpp"
 #include "console/numbers.hpp"
 #include "formats/foreign_file.hpp"
 #include "formats/keyed_cameras.hpp"
@@ -55,9 +56,28 @@ Json readXml(const ForeignFile& file)
     }
 }
 
+//! NaN and Infinity, which JSON has none of but Python writes, become null, as others have it.
+std::string withoutNaN(const std::string& text)
+{
+    std::string result;
+    bool quoted = false;
+    for (size_t i = 0; i < text.size(); i++)
+    {
+        if (text[i] == '"' && (i == 0 || text[i - 1] != '\\'))
+            quoted = !quoted;
+        size_t length = 0;
+        for (const char* const word : {"NaN", "Infinity", "-Infinity"})
+            if (!quoted && text.compare(i, std::strlen(word), word) == 0)
+                length = std::strlen(word);
+        result += length ? "null" : std::string(1, text[i]);
+        i += length ? length - 1 : 0;
+    }
+    return result;
+}
+
 Json readJson(const ForeignFile& file)
 {
-    std::istringstream in(file.bytes);
+    std::istringstream in(withoutNaN(file.bytes));
     return Json::read(in);
 }
 
@@ -251,7 +271,7 @@ void ForeignRig::add(const cv::Ptr<cv::refract::RefractiveCamera>& camera, const
 std::string ForeignFile::firstLine() const
 {
     std::istringstream in(bytes.substr(0, 4096));
-    for (std::string line; std::getline(in, line); )
+    for (std::string line; takeLine(in, line); )
         if (line.find_first_not_of(" \t\r") != std::string::npos && line[line.find_first_not_of(" \t\r")] != '#')
             return line;
     return "";

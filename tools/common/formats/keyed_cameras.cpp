@@ -43,9 +43,9 @@ std::string nameIn(const Json& map, const Names& names, const std::string& endin
 std::vector<double> neededNumbers(const Json& map, const std::string& name, size_t count)
 {
     const std::vector<double> numbers = numbersOf(map.at(name));
+    const std::string has = numbers.empty() ? ", and what it has is none or no number (nan)" : ", and has " + std::to_string(numbers.size());
     if (numbers.size() != count)
-        throw Failure("its " + name + " must have " + std::to_string(count) + " numbers" + (numbers.empty() ? "" : ", and has "
-                      + std::to_string(numbers.size())));
+        throw Failure("its " + name + " must have " + std::to_string(count) + " numbers" + has);
     return numbers;
 }
 
@@ -101,7 +101,7 @@ Ptr<RefractiveCamera> readOpenCV(const Json& map, const std::string& ending)
         throw Failure("its " + distortion + " are four, and it does not say whether they are cv::fisheye's or k1, k2, p1, p2: add "
                       "distortion_model, equidistant or plumb_bob; the latter may have a fifth, 0, instead");
     if (D.empty() && numbersOf(map.at(distortion)).empty() && !(map.at(distortion).isList() && map.at(distortion).items().empty()))
-        throw Failure("its " + distortion + " are no numbers");
+        throw Failure("its " + distortion + " are not all numbers");
     return makeCamera(said.empty() ? "opencv" : said, K, D, sizeIn(map));
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "console/failure.hpp"
+#include "console/lines.hpp"
 #include "formats/foreign_file.hpp"
 #include "formats/lens_maker.hpp"
 
@@ -25,7 +26,7 @@ std::map<std::string, std::string> sectionsOf(const std::string& text)
     std::map<std::string, std::string> sections;
     std::istringstream in(text);
     std::string name;
-    for (std::string line; std::getline(in, line); )
+    for (std::string line; takeLine(in, line); )
         if (line.compare(0, 1, "#") == 0)
         {
             const size_t begin = std::min(line.find_first_not_of("# "), line.size());

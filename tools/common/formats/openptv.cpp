@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "console/failure.hpp"
+#include "console/lines.hpp"
 #include "formats/foreign_file.hpp"
 #include "formats/lens_maker.hpp"
 
@@ -75,7 +76,7 @@ ControlParameters readControl(const fs::path& folder)
             continue;
         std::istringstream in(textOf(path));
         std::vector<std::string> lines;
-        for (std::string line; std::getline(in, line); )
+        for (std::string line; takeLine(in, line); )
             lines.push_back(line);
         const std::vector<double> count = leadingNumbers(lines.empty() ? "" : lines[0]);
         const size_t names = count.size() == 1 && count[0] >= 1 && count[0] <= 100 ? 2*(size_t)count[0] + 1 : lines.size();

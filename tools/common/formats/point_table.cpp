@@ -4,6 +4,7 @@
 #include "formats/point_table.hpp"
 #include "console/failure.hpp"
 #include "console/images.hpp"
+#include "console/lines.hpp"
 #include "console/numbers.hpp"
 #include "console/options.hpp"
 
@@ -100,13 +101,13 @@ bool takeNumbered(const std::string& word, const char*& at, const char* end, siz
     return read.ec == std::errc();
 }
 
-//! pt3_cam1_X: 3 and 1; false: it is another name.
+//! pt3_cam1_x: 3 and 1; false: it is another name.
 bool isTrack(const std::string& name, size_t& point, size_t& camera)
 {
     size_t number = 0;
     const char *at = name.data(), *const end = at + name.size();
     const bool is = takeNumbered("pt", at, end, point) && takeNumbered("_cam", at, end, number) && number >= 1 && number <= MOST_CAMERAS
-        && (std::string(at, end) == "_X" || std::string(at, end) == "_x");
+        && std::string(at, end) == "_x";
     camera = number - 1;
     return is;
 }
@@ -149,7 +150,7 @@ std::vector<Track> tracksOf(const std::string& path, const CsvTable& table, cons
         size_t point, camera;
         if (!isTrack(name, point, camera))
             continue;
-        const std::string y = name.substr(0, name.size() - 1) + (name.back() == 'X' ? "Y" : "y");
+        const std::string y = name.substr(0, name.size() - 1) + "y";
         if (table.find(y) < 0)
             throw Failure("'" + path + "': there is no column '" + y + "'");
         tracks.push_back({std::to_string(point), camera, x, table.find(y), heightOf(path, origin, camera)});
@@ -180,7 +181,7 @@ std::vector<std::string> linesOf(const std::string& path)
 {
     std::ifstream in(path);
     std::vector<std::string> lines;
-    for (std::string line; std::getline(in, line); )
+    for (std::string line; takeLine(in, line); )
         lines.push_back(line.substr(0, line.find_last_not_of("\r\n ") + 1));
     while (!lines.empty() && lines.back().empty())
         lines.pop_back();

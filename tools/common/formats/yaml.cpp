@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "formats/notations.hpp"
+#include "console/lines.hpp"
 #include "console/numbers.hpp"
 
 #include <algorithm>
@@ -61,7 +62,7 @@ std::vector<Line> linesOf(const std::string& text)
     std::istringstream in(text);
     Scan scan;
     std::string raw;
-    for (int number = 1; std::getline(in, raw); number++)
+    for (int number = 1; takeLine(in, raw); number++)
     {
         const bool goesOn = scan.brackets > 0;
         const std::string content = trimmed(scan.over(raw));

@@ -6,6 +6,7 @@
 #include "console/failure.hpp"
 #include "console/file_output.hpp"
 #include "console/numbers.hpp"
+#include "console/utf8.hpp"
 
 #include <cairo-pdf.h>
 #include <cairo-svg.h>
@@ -37,9 +38,7 @@ using Context = std::unique_ptr<cairo_t, void (*)(cairo_t*)>;
 
 bool isSvg(const std::string& path)
 {
-    std::string end = path.substr(path.find_last_of('.') + 1);
-    std::transform(end.begin(), end.end(), end.begin(), [](unsigned char c) { return std::tolower(c); });
-    return end == "svg";
+    return inLowerCase(path.substr(path.find_last_of('.') + 1)) == "svg";
 }
 
 cairo_status_t append(void* bytes, const unsigned char* data, unsigned length)

@@ -3,6 +3,7 @@
 
 #include "target/corners_vnl.hpp"
 #include "console/failure.hpp"
+#include "console/lines.hpp"
 #include "console/numbers.hpp"
 
 #include <algorithm>
@@ -77,7 +78,7 @@ std::vector<std::pair<std::string, std::vector<cv::Point2d>>> readCornersVnl(con
     std::vector<std::pair<std::string, std::vector<cv::Point2d>>> images;
     std::unique_ptr<Columns> columns;
     std::string line;
-    for (int number = 1; std::getline(in, line); number++)
+    for (int number = 1; takeLine(in, line); number++)
     {
         if (line.empty() || line.compare(0, 2, "##") == 0 || line.compare(0, 2, "#!") == 0)
             continue;

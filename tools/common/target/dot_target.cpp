@@ -4,6 +4,7 @@
 #include "target/dot_target.hpp"
 #include "console/csv.hpp"
 #include "console/failure.hpp"
+#include "console/lines.hpp"
 #include "console/numbers.hpp"
 #include "target/dot_matching.hpp"
 #include "target/refine_dots.hpp"
@@ -40,7 +41,7 @@ CsvTable tableOf(const std::string& path)
     std::ifstream in(path);
     std::vector<CsvTable::Row> rows;
     std::string line;
-    for (int number = 1; std::getline(in, line); number++)
+    for (int number = 1; takeLine(in, line); number++)
     {
         const std::vector<std::string> words = wordsOfDot(line);
         if (words.empty() && number == 1)
