@@ -234,6 +234,11 @@ TEST_CASE("refract_bundle says what is wrong with images of a wand", "[tools][bu
     CAPTURE(late.err);
     CHECK(late.code == 1);
     CHECK(mentions(late.err, "the images of camera 2 are of other moments than those of camera 1, which fit 2 images later"));
+    makeLater(f, 2, 16, 4);             // 6 in all
+    const ToolResult later = bundleImages(f, 2);
+    CAPTURE(later.err);
+    CHECK(later.code == 1);
+    CHECK(mentions(later.err, "the images of camera 2 are of other moments than those of camera 1, which fit 6 images later"));
     scene.late = 0;
     writePictures(f, wand, scene);
     const std::string start = "refract_bundle " + f / "start.yml" + " --out=" + f / "calib.yml", images = imagesOf(f, 2);
@@ -297,7 +302,7 @@ TEST_CASE("Where images of a wand leave a fit undetermined, what was seen of it 
                                       + "/right/*.jpg' --free=normal,extrinsics,distance,thickness,index --out=" + f / "calib.yml");
     CAPTURE(result.out, result.err);
     CHECK(result.code == 1);
-    CHECK(mentions(result.err, "do not determine"));
+    CHECK(mentions(result.err, "out of --free"));
     CHECK(mentions(result.err, "; wand: 23 of 30 moments; left out: 7 where"));
 }
 
@@ -305,11 +310,14 @@ TEST_CASE("What the images of a wand do not tell ends in a sentence, not in an a
 {
     const TemporaryFolder f;
     const std::string folder = paths::bundled() + "/balls";
-    const ToolResult result = runTool("refract_bundle " + folder + "/start.yml --wand=200,0.1 '" + folder + "/left/*' '" + folder
-                                      + "/right/*' --free=index --out=" + f / "c.yml");
-    CAPTURE(result.out, result.err);
-    CHECK(result.code == 1);
-    CHECK(mentions(result.err, "leave out of --free what the points hardly tell; wand: 23 of 30 moments"));
+    for (const char* free : {"index", "normal,extrinsics,index"})
+    {
+        const ToolResult result = runTool("refract_bundle " + folder + "/start.yml --wand=200,0.1 '" + folder + "/left/*' '" + folder
+                                          + "/right/*' --free=" + free + " --out=" + f / "c.yml");
+        CAPTURE(free, result.out, result.err);
+        CHECK(result.code == 1);
+        CHECK(mentions(result.err, "leave out of --free what the points hardly tell; wand: 23 of 30 moments"));
+    }
 }
 
 TEST_CASE("The images of a wand of the guide are made anew", "[.wand-data]")

@@ -33,8 +33,10 @@ struct Errors
 
 Errors errorsOf(const Shot& shot, int trials, scenes::Random& random)
 {
-    const Size size(180, 180);
-    const Matx33d K(3000, 0, 89.5, 0, 3000, 89.5, 0, 0, 1);
+    const int width = std::max(180, (int)(8*shot.radius));
+    const double middle = 0.5*(width - 1);
+    const Size size(width, width);
+    const Matx33d K(3000, 0, middle, 0, 3000, middle, 0, 0, 1);
     const Ptr<RefractiveCamera> camera = RefractiveCamera::create(K, noArray());
     camera->setImageSize(size);
     Matx33d R;
@@ -56,7 +58,7 @@ Errors errorsOf(const Shot& shot, int trials, scenes::Random& random)
     Errors errors;
     for (int trial = 0; trial < trials; trial++)
     {
-        const Point2d at(random.uniform(82, 97), random.uniform(82, 97));
+        const Point2d at(middle + random.uniform(-7.5, 7.5), middle + random.uniform(-7.5, 7.5));
         const Vec3d ray = K.inv()*Vec3d(at.x, at.y, 1);
         Mat image = still.clone();
         drawn_balls::draw({Point3d(R.t()*ray*1000), shot.radius/3, shot.bright ? 200. : 90., shot.bright ? shot.shading : 0.5*shot.shading},
@@ -108,6 +110,17 @@ TEST_CASE("The middles of balls' images are as far off as is stated, small or la
     CHECK(ratio < 1.1);
 }
 
+TEST_CASE("The std of large balls' middles is as right, of whose pixels some are taken together", "[target][balls]")
+{
+    std::vector<Shot> shots;
+    for (double radius : {27., 45., 70.})
+        for (double blur : {0.5, 1.5})
+            shots.push_back({radius, blur, 30, blur > 1});
+    const double ratio = ratioOf(shots, scenes::trials(20), 4544);
+    CHECK(ratio > 0.9);
+    CHECK(ratio < 1.1);
+}
+
 TEST_CASE("The noise that compressed images share between pixels is in the std of a ball's middle", "[target][balls]")
 {
     std::vector<Shot> shots;
@@ -124,6 +137,23 @@ TEST_CASE("A ball that is blurred to a spot without an outline is none", "[targe
     scenes::Random random(4543);
     CHECK(errorsOf({2.5, 2.5}, 10, random).found == 0);
     CHECK(errorsOf({2.5, 1.2}, 10, random).found == 10);
+}
+
+TEST_CASE("Of very many balls the brightest are looked at, which is said", "[target][balls]")
+{
+    scenes::Random random(4545);
+    const Mat background(240, 320, CV_8U, Scalar(30));
+    for (int count : {12, 20})
+    {
+        Mat image;
+        background.convertTo(image, CV_32F);
+        for (int i = 0; i < count; i++)
+            circle(image, Point(30 + 60*(i % 5), 30 + 50*(i/5)), 6, Scalar(100 + 5*i), -1, LINE_AA);
+        GaussianBlur(image, image, Size(), 0.8);
+        bool crowded;
+        CHECK(ballsIn(drawn_balls::exposed(image, 1, random), background, true, &crowded).size() == 12);
+        CHECK(crowded == (count > 12));
+    }
 }
 
 TEST_CASE("What stands still and what is not round is no ball", "[target][balls]")

@@ -16,6 +16,8 @@ namespace tools {
 
 namespace {
 
+const char LEAVE_OUT[] = "start nearer to the truth, or leave out of --free what the points hardly tell";
+
 //! The library's error in the tool's words: what was found, then what to do here.
 std::string explained(const CalibrationError& e)
 {
@@ -26,7 +28,7 @@ std::string explained(const CalibrationError& e)
         return reason + ". Leave what is known out of --free, or see more: points nearer and farther, in the corners of the images, "
             "and lengths in all directions";
     case CalibrationError::NOT_CONVERGED:
-        return "the adjustment came to no end: start nearer to the truth, or leave out of --free what the points hardly tell";
+        return std::string("the adjustment came to no end: ") + LEAVE_OUT;
     case CalibrationError::NO_SCALE:
         return "nothing tells the scale: no length of --lengths is between two points that two cameras see, by rays that meet beyond the "
             "windows; are the start and the order of the cameras right?";
@@ -38,7 +40,7 @@ std::string explained(const CalibrationError& e)
     case CalibrationError::WINDOW_NOT_SEEN:
         return format("no point was seen through the window of camera %d", e.camera + 1);
     case CalibrationError::NO_IMAGE:
-        return reason + "; check what is given of the windows, the lens, and the units of the start";
+        return reason + "; check what is given of the windows, the lens, and the units of the start, or " + LEAVE_OUT;
     default:
         return e.err;
     }
@@ -189,7 +191,7 @@ void adjusted(const std::function<void()>& adjust)
     }
     catch (const cv::Exception& e)
     {
-        throw Failure(e.err);
+        throw Failure(e.err + ": an adjustment must not come to that; " + LEAVE_OUT);
     }
 }
 

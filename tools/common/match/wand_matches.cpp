@@ -21,7 +21,7 @@ namespace {
 
 const double NaN = std::numeric_limits<double>::quiet_NaN();
 const int FEWEST = 8;               // moments, of which a fit can be made
-const int MOST_LATE = 3;            // images, by which cameras may be out of step
+const int LATE = 3, FAR_LATE = 100;             // images, by which cameras may be out of step: often, and where nothing fits
 
 /* What a camera shows that does not move, and what its images have in common. */
 struct StillCamera
@@ -81,6 +81,8 @@ public:
                     clear_[m][c] = seen.balls[m][c];
     }
 
+    const Wand& wand() const { return wand_; }
+
     //! What a rig makes of the wand where one camera sees it, medians; NaN: nothing of most moments.
     struct Usual
     {
@@ -91,9 +93,11 @@ public:
     //! @param camera which sees both balls, at so many moments later than the others
     Usual usual(const RigModel& rig, const WandLimits& limits, int camera, int later = 0) const
     {
+        const int ENOUGH = 60;          // moments, that tell by how much it is late
+        const int moments = (int)seen_.moments.size(), step = later ? (moments + ENOUGH - 1)/ENOUGH : 1;
         std::vector<double> misses, lengths;
         int looked = 0;
-        for (int m = 0; m < (int)seen_.moments.size(); m++)
+        for (int m = 0; m < moments; m += step)
         {
             const std::vector<Balls> balls = inStep(m, camera, later);
             if (!mayShowWand(balls, camera))
@@ -114,6 +118,7 @@ public:
     {
         WandMatches found;
         found.moments = (int)seen_.moments.size();
+        found.crowded = seen_.crowded;
         found.matches.pixels.resize(rig.cameras.size());
         found.matches.stds.resize(rig.cameras.size());
         for (int m = 0; m < found.moments; m++)
@@ -162,8 +167,10 @@ private:
 
 /** Throws Failure if the images of a camera fit far better so many moments later; the one that fits worst is looked at first, as it makes
 others fit badly.
-@param usual of each camera */
-void requireInStep(const WandSearch& search, const RigModel& rig, const WandLimits& limits, const std::vector<WandSearch::Usual>& usual)
+@param usual of each camera
+@param mostLate images, that are tried both ways */
+void requireInStep(const WandSearch& search, const RigModel& rig, const WandLimits& limits, const std::vector<WandSearch::Usual>& usual,
+                   int mostLate)
 {
     const double APART = 3., FAR_BETTER = 0.2;      // px; of the usual miss
     const auto missOf = [&](int camera) { return std::isnan(usual[camera].miss) ? INFINITY : usual[camera].miss; };
@@ -174,7 +181,7 @@ void requireInStep(const WandSearch& search, const RigModel& rig, const WandLimi
     {
         double least = FAR_BETTER*missOf(c);
         int best = 0;
-        for (int later = -MOST_LATE; later <= MOST_LATE && missOf(c) >= APART; later++)
+        for (int later = -mostLate; later <= mostLate && missOf(c) >= APART; later++)
         {
             const double miss = later ? search.usual(rig, limits, c, later).miss : NaN;
             if (miss < least)
@@ -207,6 +214,13 @@ void requireUnit(const std::vector<WandSearch::Usual>& usual, double tolerance, 
                                  "distance there?", path.c_str(), ofCamera.length*wand.length, wand.length));
 }
 
+//! Nothing where none is.
+std::string crowdedText(int images)
+{
+    return images == 0 ? "" : format("; %d image%s more than %zu round things that move, of which those with the most contrast are looked "
+                                     "at", images, images == 1 ? " has" : "s have", MOST_BALLS);
+}
+
 //! Of those that show a wand: in which a camera sees an end of it.
 int momentsOf(const WandMatches& found, int camera)
 {
@@ -222,8 +236,9 @@ void requireEnough(const WandMatches& found, const std::string& path)
     const int fit = (int)found.matches.names.size()/2;
     if (fit < FEWEST || fit < found.unfit)
         throw Failure(format("only %d of %d moments show a wand, and %d and most are needed: in %d no two cameras see two balls, in %d no "
-                             "two fit, in %d several do. Are the images of the cameras of '%s', in their order, and of one moment each?",
-                             fit, found.moments, FEWEST, found.unseen, found.unfit, found.unclear, path.c_str()));
+                             "two fit, in %d several do%s. Are the images of the cameras of '%s', in their order, and of one moment each?",
+                             fit, found.moments, FEWEST, found.unseen, found.unfit, found.unclear, crowdedText(found.crowded).c_str(),
+                             path.c_str()));
     for (size_t c = 0; c < found.matches.pixels.size(); c++)
     {
         const int sees = momentsOf(found, (int)c);
@@ -244,6 +259,39 @@ RigModel fittedTo(const BundleStart& start, const WandMatches& found)
     {
         throw Failure(failure.what() + ("; " + textOf(found)));
     }
+}
+
+std::vector<WandSearch::Usual> usualOfAll(const WandSearch& search, const RigModel& rig, const WandLimits& limits)
+{
+    std::vector<WandSearch::Usual> usual;
+    for (int c = 0; c < (int)rig.cameras.size(); c++)
+        usual.push_back(search.usual(rig, limits, c));
+    return usual;
+}
+
+//! @param usual of the start
+WandMatches matchedFrom(const BundleStart& start, const std::string& path, const WandSearch& search, WandLimits limits,
+                        std::vector<WandSearch::Usual> usual)
+{
+    const double LEAST[] = {1., 0.3}, TIMES[] = {3., 5.}, LENGTHS[] = {0.3, 0.1};
+    RigModel rig = start.rig;
+    WandMatches found;
+    requireUnit(usual, LENGTHS[0], path, search.wand());
+    for (int round : {0, 1})
+    {
+        double worst = 0.;
+        for (const WandSearch::Usual& ofCamera : usual)
+            worst = std::max(worst, std::isnan(ofCamera.miss) ? limits.rms : ofCamera.miss);
+        limits = {std::min(std::max(LEAST[round], TIMES[round]*worst), limits.rms), LENGTHS[round]};
+        found = search.matches(rig, limits);
+        requireEnough(found, path);
+        if (round == 0)
+        {
+            rig = fittedTo(start, found);
+            usual = usualOfAll(search, rig, limits);
+        }
+    }
+    return found;
 }
 
 } // namespace
@@ -286,46 +334,37 @@ BallSightings findBalls(const Calibration& calibration, std::vector<Frames>& cam
                 continue;
             const Mat image = greyFrame(cameras[c], moment.frames[c], calibration, c, still[c].white);
             for (int dark : {0, 1})
-                seen[dark].balls.back()[c] = ballsIn(image, still[c].background, !dark);
+            {
+                bool crowded;
+                seen[dark].balls.back()[c] = ballsIn(image, still[c].background, !dark, &crowded);
+                seen[dark].crowded += crowded;
+            }
         }
         progress.step();
     }
     const BallSightings& result = seen[withWand(seen[1]) > withWand(seen[0])];
     if (withWand(result) < FEWEST)
         throw Failure(format("--wand: two cameras see two balls in %d of %zu moments, and %d are needed. What is looked for is round, 4 "
-                             "pixels wide or more, brighter or darker than what is behind it, and moves from image to image",
-                             withWand(result), moments.size(), FEWEST));
+                             "pixels wide or more, brighter or darker than what is behind it, and moves from image to image%s",
+                             withWand(result), moments.size(), FEWEST, crowdedText(result.crowded).c_str()));
     return result;
 }
 
 WandMatches matchWand(const BundleStart& start, const std::string& path, const BallSightings& seen, const Wand& wand)
 {
-    const double LEAST[] = {1., 0.3}, TIMES[] = {3., 5.}, LENGTHS[] = {0.3, 0.1};
     const WandSearch search(seen, wand);
-    RigModel rig = start.rig;
-    WandLimits limits = {widestMiss(rig), INFINITY};
-    WandMatches found;
-    for (int round : {0, 1})
+    const WandLimits widest = {widestMiss(start.rig), INFINITY};
+    const std::vector<WandSearch::Usual> usual = usualOfAll(search, start.rig, widest);
+    requireInStep(search, start.rig, widest, usual, LATE);
+    try
     {
-        std::vector<WandSearch::Usual> usual;
-        double worst = 0.;
-        for (int c = 0; c < (int)rig.cameras.size(); c++)
-        {
-            usual.push_back(search.usual(rig, limits, c));
-            worst = std::max(worst, std::isnan(usual[c].miss) ? limits.rms : usual[c].miss);
-        }
-        if (round == 0)
-        {
-            requireInStep(search, rig, limits, usual);
-            requireUnit(usual, LENGTHS[0], path, wand);
-        }
-        limits = {std::min(std::max(LEAST[round], TIMES[round]*worst), limits.rms), LENGTHS[round]};
-        found = search.matches(rig, limits);
-        requireEnough(found, path);
-        if (round == 0)
-            rig = fittedTo(start, found);
+        return matchedFrom(start, path, search, widest, usual);
     }
-    return found;
+    catch (const Failure&)
+    {
+        requireInStep(search, start.rig, widest, usual, std::min(FAR_LATE, (int)seen.moments.size() - FEWEST));
+        throw;
+    }
 }
 
 std::string textOf(const WandMatches& found)
@@ -335,13 +374,13 @@ std::string textOf(const WandMatches& found)
     add(found.unseen, "where two cameras do not see two balls");
     add(found.unfit, "where no two fit");
     add(found.unclear, "where several do");
-    return text + (out.empty() ? "" : "; left out: " + out);
+    return text + (out.empty() ? "" : "; left out: " + out) + crowdedText(found.crowded);
 }
 
 Json jsonOf(const WandMatches& found)
 {
     return {{"moments", found.moments}, {"moments_used", found.matches.names.size()/2}, {"moments_unseen", found.unseen},
-            {"moments_unfit", found.unfit}, {"moments_unclear", found.unclear}};
+            {"moments_unfit", found.unfit}, {"moments_unclear", found.unclear}, {"images_crowded", found.crowded}};
 }
 
 } // namespace tools

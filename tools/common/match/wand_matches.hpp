@@ -20,6 +20,7 @@ struct BallSightings
 {
     std::vector<std::string> moments;
     std::vector<std::vector<Balls>> balls;      //!< of each moment, per camera
+    int crowded = 0;                            //!< images with more round things than are looked at
 };
 
 //! Of all moments that two cameras have images of. Throws Failure where there are few, or few show two balls.
@@ -31,6 +32,7 @@ struct WandMatches
     GivenLengths lengths;
     int moments = 0, unseen = 0;    //!< all; where no two cameras see two balls
     int unfit = 0, unclear = 0;     //!< where no two balls are a wand, as far as rays and length tell; where several are
+    int crowded = 0;                //!< images, of any moment, with more round things than are looked at
 };
 
 /** Which of the balls are the ends of the wand: those whose rays meet, and that are as far from each other as it is long. A start of

@@ -68,7 +68,7 @@ void addRound(const Mat& over, double level, std::vector<Candidate>& candidates)
 //! Of each ball once, at its best level.
 std::vector<Candidate> candidatesIn(const Mat& over)
 {
-    const double LOWEST = 12., STEP = 1.6, MOST = 12;
+    const double LOWEST = 12., STEP = 1.6;
     Mat smooth;
     GaussianBlur(over, smooth, Size(), 0.7);
     std::vector<Candidate> all, best;
@@ -82,7 +82,6 @@ std::vector<Candidate> candidatesIn(const Mat& over)
                                                                                              c.dot.out(b.dot.centre)) < 1; }))
             best.push_back(c);
     std::sort(best.begin(), best.end(), [](const Candidate& a, const Candidate& b) { return a.contrast > b.contrast; });
-    best.resize(std::min<size_t>(best.size(), MOST));
     return best;
 }
 
@@ -284,6 +283,33 @@ bool refine(const Mat& grey, const Mat& background, const Candidate& candidate, 
         && ball.contrast > 0 && std::sqrt(variance) < AMISS*ball.contrast && ball.std > 0 && std::isfinite(ball.std);
 }
 
+//! The same of a ball of any size: a large one has far more pixels than are needed, so some are taken together.
+bool refineAny(const Mat& grey, const Mat& background, const Candidate& candidate, bool bright, BallImage& ball)
+{
+    const double LARGE = 25., WIDE = 1.6, RIM = 6., SMOOTH = 0.6;       // px; of a radius; px that were taken together, these two
+    const double radius = radiusOf(candidate.dot), times = std::ceil(radius/LARGE), reach = WIDE*radius + RIM*times;
+    if (times <= 1)
+        return refine(grey, background, candidate, bright, ball);
+    const Point2d corner = candidate.dot.centre - Point2d(reach, reach), middle(0.5, 0.5);
+    Rect part = Rect(corner, Size2d(2*reach, 2*reach)) & Rect(Point(), grey.size());
+    part.width -= part.width % (int)times;
+    part.height -= part.height % (int)times;
+    const auto shrunk = [&](const Mat& image) {
+        Mat smooth, small;
+        GaussianBlur(image(part), smooth, Size(), SMOOTH*times);
+        resize(smooth, small, part.size()/(int)times, 0, 0, INTER_AREA);
+        return small;
+    };
+    const Mat coarseGrey = shrunk(grey), coarseBackground = shrunk(background);
+    Candidate coarse = candidate;
+    coarse.dot = {(candidate.dot.centre - Point2d(part.tl()) + middle)/times - middle, candidate.dot.toCircle*times};
+    if (!refine(coarseGrey, coarseBackground, coarse, bright, ball))
+        return false;
+    ball.outline = {(ball.outline.centre + middle)*times - middle + Point2d(part.tl()), ball.outline.toCircle*(1/times)};
+    ball.std *= times;
+    return true;
+}
+
 } // namespace
 
 Mat stillBackground(const std::vector<Mat>& images)
@@ -302,18 +328,22 @@ Mat stillBackground(const std::vector<Mat>& images)
     return background;
 }
 
-std::vector<BallImage> ballsIn(const Mat& grey, const Mat& background, bool bright)
+std::vector<BallImage> ballsIn(const Mat& grey, const Mat& background, bool bright, bool* crowded)
 {
     CV_Assert(grey.type() == CV_8U && background.type() == CV_8U && grey.size() == background.size());
     Mat over;
     subtract(grey, background, over, noArray(), CV_32F);
     if (!bright)
         over = -over;
+    std::vector<Candidate> candidates = candidatesIn(over);
+    if (crowded)
+        *crowded = candidates.size() > MOST_BALLS;
+    candidates.resize(std::min(candidates.size(), MOST_BALLS));
     std::vector<BallImage> balls;
-    for (const Candidate& candidate : candidatesIn(over))
+    for (const Candidate& candidate : candidates)
     {
         BallImage ball = {};
-        if (refine(grey, background, candidate, bright, ball))
+        if (refineAny(grey, background, candidate, bright, ball))
             balls.push_back(ball);
     }
     return balls;

@@ -20,11 +20,14 @@ struct BallImage
 part of it. @param images 8-bit grey, of equal size */
 cv::Mat stillBackground(const std::vector<cv::Mat>& images);
 
+const size_t MOST_BALLS = 12;       //!< that are looked at in an image
+
 /** Round things that are not in the background, those with the most contrast first; what is as long as it is not round, or cut by the
 image's edge, is none. The outline is the ellipse that explains best, in the sense of least squares, every pixel round it: of a blurred
 edge between the background and a ball which may be brighter on one side.
-@param bright or darker than the background */
-std::vector<BallImage> ballsIn(const cv::Mat& grey, const cv::Mat& background, bool bright);
+@param bright or darker than the background
+@param crowded whether there are more than are looked at */
+std::vector<BallImage> ballsIn(const cv::Mat& grey, const cv::Mat& background, bool bright, bool* crowded = nullptr);
 
 } // namespace tools
 
