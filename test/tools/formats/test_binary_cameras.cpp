@@ -113,6 +113,8 @@ TEST_CASE("NumPy's archives are read, stored and compressed, in both orders of m
         CHECK_THAT(refusal(saved(f, "cut", whole.substr(0, size))), Catch::Contains("looks like NumPy's archive, but")
                    && Catch::Contains("cut short"));
     CHECK_THAT(refusal(saved(f, "none", npz({{"a", npy("<f8", false, "1,", raw(1.))}}, 0))), Catch::Contains("there is no camera in it"));
+    CHECK_THAT(refusal(saved(f, "big", npz({{"mtx", npy(">f8", false, "3, 3", raw(K))}, {"dist", npy("<f8", false, "5,", raw(D))}}, 0))),
+               Catch::Contains("its mtx must have 9 numbers, and is 'numbers of type >f8: save them as float64'"));
 }
 
 TEST_CASE("Bouguet's Calib_Results is read, of one camera and of two", "[foreign]")

@@ -50,7 +50,7 @@ std::vector<size_t> shapeOf(const std::string& text)
     return shape;
 }
 
-//! One array; null where it has no numbers.
+//! One array; null where it has no numbers, a text where it has such as are not read.
 Json readNpy(const std::string& bytes)
 {
     ByteReader in(bytes);
@@ -61,6 +61,8 @@ Json readNpy(const std::string& bytes)
     const std::string heading = in.take(version > 1 ? in.number<uint32_t>() : in.number<uint16_t>());
     const std::string type = valueOf(heading, "descr", "'");
     const std::vector<size_t> shape = shapeOf(valueOf(heading, "shape", ")"));
+    if (!isKnown(type) && type.find_first_of("iufc") < type.find_first_of("0123456789"))
+        return "numbers of type " + type + ": save them as float64";
     if (!isKnown(type) || shape.size() > 3)
         return nullptr;
     const bool fortran = valueOf(heading, "fortran_order", ",}").compare(0, 4, "True") == 0;
