@@ -40,10 +40,11 @@ lengths.csv: [image,]id1,id2,length,std, distances between points, with one stan
 that show both points. Rows with equal length and std are one object: its error is one, however many moments there are.
 
 --wand=LENGTH[,STD] IMAGES: in place of both tables a quoted glob, numbered images or a video of each camera, of a stick with a ball
-at each end, LENGTH between their centres (STD: 0.1 % of it). Images of one moment have equal names but for the camera's part. Balls are
-round, 4 pixels wide or more, brighter than what is behind them or darker, and move; what stands still, as lamps and their images in the
-pane, does not count. The two balls are those whose rays meet and that are LENGTH apart; a moment where a ball is hidden, or where several
-fit, is left out and counted. --points-out has their pixels (a is the larger ball), and --points reads it.
+at each end, LENGTH between their centres (STD: 0.1 % of it). Images of one moment have equal names but for the camera's part; where that
+is not clear, --view-pattern says where the moment stands. Balls are round, 4 pixels wide or more, brighter than what is behind them or
+darker, and move; what stands still, as lamps and their images in the pane, does not count. The two balls are those whose rays meet and
+that are LENGTH apart; a moment where a ball is hidden, or where several fit, is left out and counted. --points-out has their pixels (a is
+the larger ball), and --points reads it.
 
 Three kinds of parameters. What --free names starts at the values of start.yml and follows from the matches alone. What has a
 variance in start.yml (what refract_calib wrote has a covariance) is estimated within that; where it has none, thickness, index,
@@ -72,7 +73,7 @@ using namespace tools;
 
 struct Options
 {
-    std::string start, points, wand, lengths, out, pointsOut, posesOut, colmapOut, summary;
+    std::string start, points, wand, viewPattern, lengths, out, pointsOut, posesOut, colmapOut, summary;
     std::vector<std::string> images;
     BundleOptions bundle;
     PixelOrigin origin;
@@ -91,6 +92,7 @@ void addOptions(OptionParser& parser, Options& o)
     const Option images = parser.add("IMAGES", o.images, "with --wand: of each camera a quoted glob or a video");
     const Option wand = parser.add("--wand", o.wand, "LENGTH[,STD] of a wand with two balls, which IMAGES show").needs(images)
         .excludes(points);
+    addViewPattern(parser, o.viewPattern).needs(wand);
     const Option colmap = parser.add("--colmap", o.survey.model, "or a folder with a model of COLMAP, of raw images").excludes(points)
         .excludes(wand);
     addYFrom(parser, o.origin.yFrom).needs(points);
@@ -201,7 +203,7 @@ Observations readTables(const Options& o, const Calibration& file)
 Observations findWand(const Options& o, const Calibration& file, const BundleStart& start, bool quiet)
 {
     const Wand wand = parseWand(o.wand);
-    std::vector<Frames> frames = framesOf(o.images, file, o.start);
+    std::vector<Frames> frames = framesOf(o.images, file, o.start, o.viewPattern);
     const WandMatches found = matchWand(start, o.start, findBalls(file, frames, quiet), wand);
     return {found.matches, found.lengths, textOf(found) + "\n", jsonOf(found)};
 }

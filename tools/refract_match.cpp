@@ -41,7 +41,7 @@ using namespace tools;
 
 struct Options
 {
-    std::string calibration, depth, out, picture;
+    std::string calibration, viewPattern, depth, out, picture;
     std::vector<std::string> images;
     SceneOptions scene;
     bool noWindow = false;
@@ -51,6 +51,7 @@ void addOptions(OptionParser& parser, Options& o)
 {
     parser.add("calib.yml", o.calibration, "of two cameras or more, what refract_calib wrote").required();
     parser.add("IMAGES", o.images, "of each camera: an image, a quoted glob or a video").required();
+    addViewPattern(parser, o.viewPattern);
     parser.add("--depth", o.depth, "NEAR,FAR: z of the scene in the frame of camera 1; FAR may be inf");
     parser.add("--search", o.scene.search, "pixels from the epipolar curve within which partners are looked for").check(moreThanZero());
     parser.add("--count", o.scene.count, "matches at most").check(isCount()).captureDefault();
@@ -131,7 +132,7 @@ int refract_match_main(int argc, char** argv)
         std::vector<std::string> inputs = options.images;
         inputs.insert(inputs.end(), {options.calibration, command.settings()});
         checkOutputs({{"--out", options.out, OUTPUT_TEXT}, {"--picture", options.picture, OUTPUT_PICTURE}}, inputs);
-        std::vector<Frames> frames = framesOf(options.images, calibration, options.calibration);
+        std::vector<Frames> frames = framesOf(options.images, calibration, options.calibration, options.viewPattern);
         options.scene.depth = options.depth.empty() ? calibratedDepthRange(calibration, options.calibration)
                                                     : givenDepthRange(options.depth, calibration);
         const SceneMatches result = matchScene(calibration, frames, options.scene, command.quiet());

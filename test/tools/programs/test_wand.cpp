@@ -294,6 +294,26 @@ TEST_CASE("refract_bundle names the one of three cameras whose images of a wand 
     CHECK(mentions(few.err, "camera 3 has images of 3 moments"));
 }
 
+TEST_CASE("Where names of a wand's images do not say the moment clearly, --view-pattern does", "[tools][bundle][wand]")
+{
+    const std::string folder = paths::bundled() + "/balls";
+    const TemporaryFolder f;
+    std::filesystem::create_directories(f / "all");
+    for (int m = 0; m < 30; m++)
+        for (int c : {0, 1})
+            std::filesystem::copy_file(folder + format("/%s/m%02d.jpg", c ? "right" : "left", m),
+                                       f / format("all/%c%d_%02d_%d.jpg", c ? 'q' : 'p', 100 - m*(c + 1), m, 7*m + 50*c));
+    const std::string command = "refract_bundle " + folder + "/start.yml --wand=200 '" + f / "all/p*.jpg' '" + f / "all/q*.jpg' --out="
+        + f / "calib.yml";
+    CHECK(runTool(command).code == 1);
+    const ToolResult result = runTool(command + " --view-pattern='*_{}_*'");
+    CAPTURE(result.out, result.err);
+    CHECK(result.code == 0);
+    CHECK(mentions(result.out, "wand: 23 of 30 moments"));
+    CHECK(mentions(runTool(command + " --view-pattern='m{}'").err, "has no name of this form"));
+    CHECK(mentions(runTool(command + " --view-pattern='*'").err, "{} must stand in it once"));
+}
+
 TEST_CASE("Where images of a wand leave a fit undetermined, what was seen of it is said", "[tools][bundle][wand]")
 {
     const std::string folder = paths::bundled() + "/balls";

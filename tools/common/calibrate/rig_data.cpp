@@ -3,6 +3,7 @@
 
 #include "calibrate/rig_data.hpp"
 #include "console/failure.hpp"
+#include "console/frames.hpp"
 #include "console/options.hpp"
 #include "console/table.hpp"
 #include "console/view_names.hpp"
@@ -30,7 +31,7 @@ void RigSources::addTo(OptionParser& parser, const std::string& aboutGlass, cons
             if (c > 1)
                 option.hide();          // told in the manual: help of one screen
     }
-    parser.add("--view-pattern", viewPattern, "where names of images have the moment: {}, and * for anything, as in cam*_{}_raw or {}/*");
+    addViewPattern(parser, viewPattern);
 }
 
 std::vector<std::string> RigSources::all() const
@@ -166,24 +167,20 @@ void requireOwnImages(const RigImages& sets)
 //! By the part of its path that the user says.
 void nameByPattern(RigImages& sets, const std::string& pattern)
 {
-    if (pattern.find("{}") == std::string::npos || pattern.find("{}") != pattern.rfind("{}"))
-        throw Failure("--view-pattern=" + pattern + ": {} must stand in it once, where the moment is, as in cam*_{}_raw");
     for (int c = 0; c < MAX_CAMERAS; c++)
         for (DetectedImages* set : {&sets.direct[c], &sets.glass[c]})
         {
-            std::map<std::string, std::string> known;
+            std::vector<DetectedImage*> images;
+            std::vector<std::string> paths;
             for (DetectedImage& image : set->images)
-            {
-                if (isPointFile(image.path))
-                    continue;
-                image.stem = momentOf(image.path, pattern);
-                const auto first = known.insert({image.stem, image.path});
-                if (image.stem.empty())
-                    throw Failure("--view-pattern=" + pattern + ": '" + image.path + "' has no name of this form");
-                if (!first.second)
-                    throw Failure("--view-pattern=" + pattern + ": '" + first.first->second + "' and '" + image.path
-                                  + "' of one camera both are of the moment '" + image.stem + "'");
-            }
+                if (!isPointFile(image.path))
+                {
+                    images.push_back(&image);
+                    paths.push_back(image.path);
+                }
+            const std::vector<std::string> moments = momentsByPattern(paths, pattern);
+            for (size_t i = 0; i < images.size(); i++)
+                images[i]->stem = moments[i];
         }
 }
 

@@ -4,6 +4,7 @@
 #include "console/frames.hpp"
 #include "console/failure.hpp"
 #include "console/images.hpp"
+#include "console/options.hpp"
 #include "console/view_names.hpp"
 
 #include <opencv2/core/utils/logger.hpp>
@@ -75,17 +76,6 @@ bool findNumbered(const std::string& source, std::vector<std::string>& files, st
     return true;
 }
 
-//! What images of one moment are found by: of a video or of numbered images their number.
-std::vector<std::string> namesOf(const Frames& frames)
-{
-    if (!frames.numbered())
-        return viewNames(frames.files());
-    std::vector<std::string> names;
-    for (int i = 0; i < frames.size(); i++)
-        names.push_back(frames.stem(i));
-    return names;
-}
-
 std::map<std::string, int> indexOf(const std::vector<std::string>& names, const Frames& frames)
 {
     std::map<std::string, int> index;
@@ -114,7 +104,13 @@ void requireEqualLength(const Frames& first, const Frames& second)
 
 } // namespace
 
-Frames::Frames(const std::string& source) : source_(source)
+Option addViewPattern(OptionParser& parser, std::string& pattern)
+{
+    return parser.add("--view-pattern", pattern,
+                      "where names of images have the moment: {}, and * for anything, as in cam*_{}_raw or {}/*");
+}
+
+Frames::Frames(const std::string& source, const std::string& viewPattern) : source_(source), viewPattern_(viewPattern)
 {
     if (findNumbered(source, files_, numbers_))
         return;
@@ -153,6 +149,19 @@ std::string Frames::stem(int i) const
     return cv::format("frame%06ld", isVideo() ? i + 1L : numbers_[i]);
 }
 
+//! Of a video or of numbered images their number.
+std::vector<std::string> Frames::moments() const
+{
+    if (!viewPattern_.empty() && !isVideo())
+        return momentsByPattern(files_, viewPattern_);
+    if (!numbered())
+        return viewNames(files_);
+    std::vector<std::string> names;
+    for (int i = 0; i < size(); i++)
+        names.push_back(stem(i));
+    return names;
+}
+
 std::string Frames::name(int i) const
 {
     return isVideo() ? source_ + cv::format(", frame %d", i + 1) : files_[i];
@@ -184,7 +193,7 @@ std::vector<Moment> momentsOf(const std::vector<const Frames*>& cameras)
     std::map<std::string, std::vector<int>> byStem;
     std::vector<std::vector<std::string>> names;
     for (const Frames* frames : cameras)
-        names.push_back(namesOf(*frames));
+        names.push_back(frames->moments());
     takeOffCameras(names);
     for (int c = 0; c < count; c++)
     {

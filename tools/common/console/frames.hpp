@@ -16,8 +16,9 @@ class Frames
 {
 public:
     /** Throws Failure if there is nothing.
-    @param source an image, a glob, numbered images (left%04d.png) or a video file */
-    explicit Frames(const std::string& source);
+    @param source an image, a glob, numbered images (left%04d.png) or a video file
+    @param viewPattern where names have the moment, see momentOf(); empty: what takeOffCameras() finds */
+    explicit Frames(const std::string& source, const std::string& viewPattern = "");
 
     int size() const { return (int)(isVideo() ? count_ : files_.size()); }
     //! Without a name of its own, but with a number: of a video or of numbered images.
@@ -33,19 +34,26 @@ public:
 
     const std::string& source() const { return source_; }
     const std::vector<std::string>& files() const { return files_; }    //!< empty: a video
+    //! What images of one moment are found by.
+    std::vector<std::string> moments() const;
 
 private:
     void open();
     cv::Mat readVideo(int i);
 
-    std::string source_;
+    std::string source_, viewPattern_;
     std::vector<std::string> files_;
     std::vector<long> numbers_;         //!< of numbered images
     cv::VideoCapture video_;
     int count_ = 0, next_ = 0;
 };
 
-//! Two images of one moment.
+class Option;
+class OptionParser;
+
+//! --view-pattern
+Option addViewPattern(OptionParser& parser, std::string& pattern);
+
 //! What several cameras took at one moment.
 struct Moment
 {

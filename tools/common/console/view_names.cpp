@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "console/view_names.hpp"
+#include "console/failure.hpp"
 #include "console/images.hpp"
 
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <map>
 #include <set>
 
 namespace tools {
@@ -93,6 +95,26 @@ std::string momentOf(const std::string& path, const std::string& pattern)
     for (auto left = std::count(pattern.begin(), pattern.end(), '/'); left > 0; left--, folder = folder.parent_path())
         name = folder.filename().generic_string() + "/" + name;
     return isOfForm(pattern.c_str(), name, moment) ? moment : "";
+}
+
+std::vector<std::string> momentsByPattern(const std::vector<std::string>& paths, const std::string& pattern)
+{
+    const std::string option = "--view-pattern=" + pattern + ": ";
+    if (pattern.find("{}") == std::string::npos || pattern.find("{}") != pattern.rfind("{}"))
+        throw Failure(option + "{} must stand in it once, where the moment is, as in cam*_{}_raw");
+    std::map<std::string, std::string> known;
+    std::vector<std::string> moments;
+    for (const std::string& path : paths)
+    {
+        moments.push_back(momentOf(path, pattern));
+        const auto first = known.insert({moments.back(), path});
+        if (moments.back().empty())
+            throw Failure(option + "'" + path + "' has no name of this form");
+        if (!first.second)
+            throw Failure(option + "'" + first.first->second + "' and '" + path + "' of one camera both are of the moment '"
+                          + moments.back() + "'");
+    }
+    return moments;
 }
 
 std::vector<std::string> viewNames(const std::vector<std::string>& paths)

@@ -25,6 +25,9 @@ extension, and of as many folders as the pattern has. The first * take as little
 this form. */
 std::string momentOf(const std::string& path, const std::string& pattern);
 
+//! Of all images of a camera. Throws Failure where the pattern has no {}, or where a name is not of it or says a moment again.
+std::vector<std::string> momentsByPattern(const std::vector<std::string>& paths, const std::string& pattern);
+
 } // namespace tools
 
 #endif // REFRACT_TOOLS_VIEW_NAMES_HPP

@@ -102,7 +102,8 @@ double wrongOf(const SceneMatches& result)
 
 } // namespace
 
-std::vector<Frames> framesOf(const std::vector<std::string>& sources, const Calibration& calibration, const std::string& filename)
+std::vector<Frames> framesOf(const std::vector<std::string>& sources, const Calibration& calibration, const std::string& filename,
+                             const std::string& viewPattern)
 {
     if (calibration.single())
         throw Failure("'" + filename + "' has one camera: what it sees at one place has no depth, so that there is nothing to match");
@@ -114,7 +115,7 @@ std::vector<Frames> framesOf(const std::vector<std::string>& sources, const Cali
             throw Failure(format("'%s' does not say image_width and image_height of camera %zu: add them", filename.c_str(), c + 1));
     std::vector<Frames> frames;
     for (const std::string& source : sources)
-        frames.emplace_back(source);
+        frames.emplace_back(source, viewPattern);
     return frames;
 }
 

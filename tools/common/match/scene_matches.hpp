@@ -15,7 +15,8 @@ namespace tools {
 
 /** What each camera of a calibration took. Throws Failure if there are not as many as cameras, or one alone. @param filename of the
 calibration, for the text */
-std::vector<Frames> framesOf(const std::vector<std::string>& sources, const Calibration& calibration, const std::string& filename);
+std::vector<Frames> framesOf(const std::vector<std::string>& sources, const Calibration& calibration, const std::string& filename,
+                             const std::string& viewPattern = "");
 
 //! That two cameras have images of. Throws Failure if there are none.
 std::vector<Moment> sharedMoments(const std::vector<Frames>& cameras);
