@@ -6,6 +6,7 @@
 #include "calibrate/units.hpp"
 #include "calibrate/window_face.hpp"
 #include "console/table.hpp"
+#include "measure/vector_length.hpp"
 #include <algorithm>
 #include <cmath>
 
@@ -203,6 +204,7 @@ private:
             [c](RigModel& rig, const VectorXd& d) {
                 changeWindow(rig, c, [&](GlassWindow& w) { w.wedge[0] += Vec2d(d[0], d[1]); }); });
         rows.back().isOfAnotherPane = true;
+        rows.back().axes = {"1", "2"};          // as the window's file counts them
         const GlassWindow window = rig_.cameras[c]->window();
         add(name + ": another pane, wedge and thickness changed by", c, {minutes, length(1, window.thickness[0])},
             [c](RigModel& rig, const VectorXd& d) {
@@ -340,6 +342,15 @@ VectorXd Change::ranges() const
     return ranges;
 }
 
+static std::vector<ValueAboutAxis> aboutAxes(const Change& change, const VectorXd& value, const MatrixXd& covariance)
+{
+    const double factor = change.chart.empty() ? change.quantities[0].factor : change.chartFactor;
+    std::vector<ValueAboutAxis> about;
+    for (int i = 0; i < (int)value.size(); i++)
+        about.push_back({change.axes[i], factor*value[i], std::abs(factor)*std::sqrt(std::max(0., covariance(i, i)))});
+    return about;
+}
+
 std::vector<ChangedValue> valuesOf(const Change& change, const VectorXd& delta, const MatrixXd& covariance)
 {
     std::vector<ChangedValue> values;
@@ -347,20 +358,23 @@ std::vector<ChangedValue> valuesOf(const Change& change, const VectorXd& delta, 
     for (const ChangedQuantity& quantity : change.quantities)
     {
         const VectorXd part = delta.segment(at, quantity.count);
-        const double length = quantity.count == 1 ? part[0] : part.norm();
-        const VectorXd along = quantity.count == 1 || !(length > 0.) ? VectorXd(VectorXd::Unit(quantity.count, 0)) : VectorXd(part/length);
         const MatrixXd C = covariance.block(at, at, quantity.count, quantity.count);
-        const double variance = along.dot(C*along), across = std::max(0., C.trace() - variance);
-        // Errors across it make a vector longer, whatever they are: by as much it may be too long.
-        const double longer = length - std::sqrt(std::max(0., length*length - across));
-        ChangedValue changed{quantity.factor*length, quantity.factor*std::hypot(std::sqrt(std::max(0., variance)),
-                                                                                quantity.count > 1 ? longer : 0.), quantity.unit};
-        for (int i = 0; change.isTurn && i < quantity.count; i++)
-            changed.aboutAxes.push_back({change.axes[i], quantity.factor*part[i], quantity.factor*std::sqrt(std::max(0., C(i, i)))});
+        const VectorLength length = lengthOf(part, C);
+        ChangedValue changed{quantity.factor*length.value, quantity.factor*length.std, quantity.unit};
+        if (quantity.count > 1 && (int)change.axes.size() == quantity.count)
+            changed.aboutAxes = aboutAxes(change, part, C);
         values.push_back(changed);
         at += quantity.count;
     }
     return values;
+}
+
+//! A length hides that one axis is known much worse than another.
+static bool isUnevenlyKnown(const std::vector<ValueAboutAxis>& axes)
+{
+    const double UNEVEN = 3.;
+    const auto [least, most] = std::minmax_element(axes.begin(), axes.end(), [](const auto& a, const auto& b) { return a.std < b.std; });
+    return most != axes.end() && most->std > UNEVEN*least->std;
 }
 
 std::string sentenceOf(const Change& change, const std::vector<ChangedValue>& values)
@@ -370,12 +384,14 @@ std::string sentenceOf(const Change& change, const std::vector<ChangedValue>& va
     {
         text += (i ? " and " : " ") + plusMinus(values[i].value, values[i].std) + (values[i].unit.empty() ? "" : " " + values[i].unit);
         std::string separator = " (";
-        for (const ValueAboutAxis& about : values[i].aboutAxes)
+        const bool tellsAxes = change.isTurn || isUnevenlyKnown(values[i].aboutAxes);
+        for (size_t a = 0; tellsAxes && a < values[i].aboutAxes.size(); a++)
         {
+            const ValueAboutAxis& about = values[i].aboutAxes[a];
             text += separator + about.axis + " " + plusMinus(about.value, about.std);
             separator = ", ";
         }
-        text += values[i].aboutAxes.empty() ? "" : ")";
+        text += tellsAxes && !values[i].aboutAxes.empty() ? ")" : "";
     }
     return text;
 }

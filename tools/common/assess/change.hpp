@@ -52,7 +52,7 @@ struct ChangedValue
 {
     double value, std;
     std::string unit;
-    //! Of a turn: one may be known ten times as well as another, which a length does not say.
+    //! Of a vector: one may be known ten times as well as another, which a length does not say.
     std::vector<ValueAboutAxis> aboutAxes = {};
 };
 std::vector<ChangedValue> valuesOf(const Change& change, const VectorXd& delta, const MatrixXd& covariance);

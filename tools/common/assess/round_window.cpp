@@ -7,6 +7,7 @@
 #include "calibrate/window_face.hpp"
 #include "console/table.hpp"
 #include "measure/point_error.hpp"
+#include "measure/vector_length.hpp"
 #include <algorithm>
 #include <cmath>
 
@@ -20,17 +21,14 @@ namespace {
 const double AS_WELL = 1.02;            // times the RMS: a window that gains less than two percent of it
 const int COLUMNS = 9;
 
-//! Along the direction from the camera; at the centre, where there is none, along the worst.
+//! Of a tube: across its axis.
 double offsetStdOf(const Fit& fit, int camera, const GlassWindow& window)
 {
     const ParameterColumns at = columnsOf(fit.rig, camera);
     const Mat covariance = fit.covariance(Rect(at.center, at.center, 3, 3));
-    const double worst = principalStd(fit.covariance, at.center)[0], offset = offsetOf(window);
-    if (!(offset > worst))
-        return worst;
-    const bool isTube = window.shape == WINDOW_TUBE;
-    const Mat along = Mat((isTube ? window.center - window.axis.dot(window.center)*window.axis : window.center)/offset);
-    return std::sqrt(std::max(0., along.dot(covariance*along)));
+    const Vec3d along = window.shape == WINDOW_TUBE ? window.axis : Vec3d();
+    const Mat across = Mat::eye(3, 3, CV_64F) - Mat(along)*Mat(along).t();
+    return lengthOf(toEigen(across*Mat(window.center)), toEigen(across*covariance*across.t())).std;
 }
 
 //! From where pixels see points without the window to where they see them with it.

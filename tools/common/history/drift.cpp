@@ -4,6 +4,7 @@
 #include "history/drift.hpp"
 #include "console/table.hpp"
 #include "math/dense.hpp"
+#include "measure/vector_length.hpp"
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -247,11 +248,8 @@ std::vector<DriftCause> driftCauses(const CheckHistory& history, const MatrixXd&
 std::string sentenceOf(const DriftCause& cause, const CheckHistory& history)
 {
     const ChartedChange& change = history.changes[cause.change];
-    const double length = cause.value.size() == 1 ? cause.value[0] : cause.value.norm();
-    const VectorXd along = cause.value.size() == 1 || !(length > 0.) ? VectorXd(VectorXd::Unit(cause.value.size(), 0))
-                                                                     : VectorXd(cause.value/length);
-    const double std = std::sqrt(along.dot(cause.covariance*along));
-    return change.name + (cause.steady ? " has drifted by " : " has changed by ") + plusMinus(length, std)
+    const VectorLength length = lengthOf(cause.value, cause.covariance);
+    return change.name + (cause.steady ? " has drifted by " : " has changed by ") + plusMinus(length.value, length.std)
         + (change.unit.empty() ? "" : " " + change.unit)
         + (cause.sinceCalibration ? " since the calibration" : " since " + history.checks[cause.since].time.substr(0, 10));
 }
