@@ -4,7 +4,7 @@
 #include "assess/rig_check.hpp"
 #include "assess/check_level.hpp"
 #include "assess/check_problem.hpp"
-#include "assess/image_noise.hpp"
+#include "measure/image_noise.hpp"
 #include "assess/swapped_images.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "measure/f_distribution.hpp"

@@ -114,31 +114,30 @@ const Mistake LAST_MISTAKES[] = {
     {[](const CalibrationInput& input) { return hasPairs(input.data); }, unpairedImages},
     {isRig, unrelatedViews}};
 
-//! px, that correct input leaves: as much as the lens's own images do; 0 where there are none.
-double cleanError(const CalibrationInput& input)
+/** px, that correct input leaves: as much as the lens's own images do, or, of lenses that only images through the windows tell, as smooth
+maps do; 0: not known. */
+double cleanError(const CalibrationInput& input, const PlainFit& plain)
 {
     double worst = 0.;
+    bool isSealed = true;
     for (int c = 0; c < input.data.cameraCount; c++)
-        try
-        {
-            std::vector<LensSource> sources;
-            const CalibrationInput one = oneCamera(input, c);
-            startModel(one.data, one.options, sources);
-            worst = std::max(worst, sources[0].kind == LensSource::FROM_DIRECT ? sources[0].rms : 0.);
-        }
-        catch (const std::exception&) {}        // told elsewhere
-    return CLEAN*worst;
+    {
+        worst = std::max(worst, errorOfDirect(input, c));
+        isSealed = isSealed && !input.options.known[c];
+    }
+    return CLEAN*(worst > 0. || !isSealed ? worst : MEDIAN*plain.noise);
 }
 
 template <size_t N>
-std::vector<Explanation> explanationsOf(const CalibrationInput& input, const Mistake (&mistakes)[N], double maxPx, double clean)
+std::vector<Explanation> explanationsOf(const CalibrationInput& input, const Mistake (&mistakes)[N], double maxPx, double clean,
+                                        const PlainFit& plain)
 {
     std::vector<Explanation> tried;
     for (const Mistake& mistake : mistakes)
     {
         if (!mistake.appliesTo(input))
             continue;
-        tried.push_back(mistake.undo(input));
+        tried.push_back(mistake.undo == wrongMedium && plain.otherMedium ? *plain.otherMedium : mistake.undo(input));
         if (tried.back().px < std::min(clean, maxPx))
             break;
     }
@@ -216,9 +215,9 @@ std::vector<std::string> confirmedClear(const CalibrationInput& input, const Mix
 
 /** What is wrong with images whatever the window is: each image and each camera is right by itself. Those that give images or cameras
 places of their own come last, as they explain any other. */
-std::vector<std::string> imageMistakes(const CalibrationInput& input, const MixUps& mixUps)
+std::vector<std::string> imageMistakes(const CalibrationInput& input, const MixUps& mixUps, const PlainFit& plain)
 {
-    const double sound = largestSoundError(input.data), clean = cleanError(input);
+    const double sound = largestSoundError(input.data), clean = cleanError(input, plain);
     std::vector<std::string> sentences = confirmedClear(input, mixUps, clean);
     if (!sentences.empty())
         return sentences;
@@ -277,17 +276,17 @@ std::vector<std::string> toldBeside(const CalibrationInput& input, const Contrad
 
 std::vector<std::string> diagnose(const CalibrationInput& input, const MixUps& mixUps, const PlainFit& plain, bool imagesToo)
 {
-    std::vector<std::string> sentences = imagesToo ? imageMistakes(input, mixUps) : std::vector<std::string>();
+    std::vector<std::string> sentences = imagesToo ? imageMistakes(input, mixUps, plain) : std::vector<std::string>();
     if (!sentences.empty())
         return sentences;
-    const double sound = largestSoundError(input.data), clean = cleanError(input);
+    const double sound = largestSoundError(input.data), clean = cleanError(input, plain);
     if (plain.explained)        // a given value; what is much further from what is given may explain it too
     {
-        std::vector<Explanation> others = explanationsOf(input, FAR_OFF, sound, clean);
+        std::vector<Explanation> others = explanationsOf(input, FAR_OFF, sound, clean, plain);
         if (isFound(others, clean))
             return toldBeside(input, *plain.explained, others, clean);
         if (!(plain.px < NO_FIT))       // pairs that contradict each other: a cause is one name for that, an exchange may be another
-            for (const Explanation& e : explanationsOf(input, MISTAKES, sound, clean))
+            for (const Explanation& e : explanationsOf(input, MISTAKES, sound, clean, plain))
                 others.push_back(e);
         else if (plain.px > sound && SCALE.appliesTo(input))    // another unit is too far for a fit that starts from what was given
             others.push_back(SCALE.undo(input));
@@ -296,9 +295,9 @@ std::vector<std::string> diagnose(const CalibrationInput& input, const MixUps& m
         return toldBeside(input, *plain.explained, others, clean);
     }
     const double most = std::min(EXPLAINS*plain.px, sound);
-    std::vector<Explanation> explaining = explanationsOf(input, FAR_OFF, most, clean);
+    std::vector<Explanation> explaining = explanationsOf(input, FAR_OFF, most, clean, plain);
     if (!isFound(explaining, clean))
-        for (const Explanation& e : explanationsOf(input, MISTAKES, most, clean))
+        for (const Explanation& e : explanationsOf(input, MISTAKES, most, clean, plain))
             explaining.push_back(e);
     explaining = bestBelow(most, explaining);
     if (explaining.empty())
@@ -306,7 +305,7 @@ std::vector<std::string> diagnose(const CalibrationInput& input, const MixUps& m
         sentences = confirmed(input, mixUps.possible, MOST_POSSIBLE, clean);
         if (!sentences.empty())
             return sentences;
-        explaining = explanationsOf(input, LAST_MISTAKES, most, clean);
+        explaining = explanationsOf(input, LAST_MISTAKES, most, clean, plain);
     }
     for (const Explanation& e : explaining)
         sentences.push_back(fits(input, e, clean));
@@ -358,21 +357,24 @@ bool requireNoMixUp(const CalibrationInput& input, const MixUps& mixUps, std::op
             only = fit.rig;
         return false;
     }
-    const std::vector<std::string> reasons = imageMistakes(input, mixUps);
+    const std::vector<std::string> reasons = imageMistakes(input, mixUps, PlainFit());
     if (!reasons.empty())
         refuse(input, px, reasons);
     return true;
 }
 
-bool isSuspicious(const CalibrationInput& input, const PlainFit& plain)
+bool isSuspicious(const CalibrationInput& input, PlainFit& plain)
 {
     if (!(plain.px < largestSoundError(input.data)))
         return true;
-    const double clean = cleanError(input);
+    const double clean = cleanError(input, plain);
     if (clean > 0. && CLEAN*plain.px > IMPLAUSIBLE*clean)
         return true;
     // In another medium than theirs images fit to some extent, with a window that is tilted far, or with another focal length.
-    return CLEAN*clean < plain.px && wrongMedium(input).px < EXPLAINS*plain.px;
+    if (!(CLEAN*clean < plain.px))
+        return false;
+    plain.otherMedium = wrongMedium(input);
+    return plain.otherMedium->px < EXPLAINS*plain.px;
 }
 
 bool isSound(const CalibrationInput& input, const PlainFit& plain, bool suspicious)

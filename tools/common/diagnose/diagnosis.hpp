@@ -32,8 +32,9 @@ looked at before any that is not short.
 bool requireNoMixUp(const CalibrationInput& input, const MixUps& mixUps, std::optional<RigModel>& only);
 
 /** Whether a fit to all images leaves far more than the lens's own images do, or than one with another medium behind the windows: a
-mistake may explain it, be it below a pixel. */
-bool isSuspicious(const CalibrationInput& input, const PlainFit& plain);
+mistake may explain it, be it below a pixel.
+@param plain gets what another medium does */
+bool isSuspicious(const CalibrationInput& input, PlainFit& plain);
 
 /** Whether a fit to all images is near enough for one without wrong points to be looked for: half of the corners are where detectors find
 them, and not far more off than the lens's own images leave them. */

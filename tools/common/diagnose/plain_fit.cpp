@@ -6,6 +6,8 @@
 #include "calibrate/image_fit.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "diagnose/rig_vector.hpp"
+#include "measure/image_noise.hpp"
+#include <algorithm>
 #include <cmath>
 
 using namespace cv;
@@ -88,9 +90,11 @@ PlainFit fitPlainly(const CalibrationInput& input, const std::optional<RigModel>
         RigModel start = startModel(input.data, exact, sources);
         if (found)
             start = placedAs(start, *found);
+        plain.noise = imageNoise(start, input.data.views).sigma;
         try
         {
             const Fit fit = fitAllImages(input.data, start, sources, options.flags, ITERATIONS, found.has_value());
+            plain.noise = std::min(plain.noise, imageNoise(fit.rig, input.data.views).sigma);
             plain.px = medianCornerError(input.data, residualsOf(input.data, fit));
             if (isOnlyMinimum(input.data, fit, options.flags))
                 plain.only = fit.rig;

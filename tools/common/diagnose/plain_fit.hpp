@@ -7,6 +7,7 @@
 #include "diagnose/calibration_input.hpp"
 #include "diagnose/fit_quality.hpp"
 #include "diagnose/hypothesis_tests.hpp"
+#include "diagnose/mistake.hpp"
 #include <optional>
 
 namespace tools {
@@ -15,8 +16,10 @@ namespace tools {
 struct PlainFit
 {
     double px = NO_FIT;                         //!< medianCornerError
+    double noise = 0.;                          //!< px, what smooth maps leave of each image (imageNoise); 0: not known
     std::optional<Contradiction> explained;     //!< a cause that explains all of its residuals
     std::optional<RigModel> only;               //!< the rig, if the search met no other minimum: later fits start there
+    std::optional<Explanation> otherMedium;     //!< wrongMedium, once it was tried
 };
 
 //! @param found where an earlier fit, with what is given as exact, met the only minimum

@@ -88,20 +88,33 @@ std::string partOfBoard(const CalibrationInput& input, size_t fewest)
                   "count the inner corners (dots)", shifted, pairs);
 }
 
+double errorOfDirect(const CalibrationInput& input, int camera)
+{
+    const std::vector<View>& views = input.data.views;
+    if (input.options.known[camera] || std::none_of(views.begin(), views.end(), [&](const View& v) { return !v.direct[camera].empty(); }))
+        return 0.;
+    try
+    {
+        std::vector<LensSource> sources;
+        const CalibrationInput one = oneCamera(input, camera);
+        startModel(one.data, one.options, sources);
+        return sources[0].rms;
+    }
+    catch (const std::exception&)       // told elsewhere
+    {
+        return 0.;
+    }
+}
+
 std::string badCorners(const CalibrationInput& input)
 {
     for (int c = 0; c < input.data.cameraCount; c++)
-        try
-        {
-            std::vector<LensSource> sources;
-            const CalibrationInput one = oneCamera(input, c);
-            startModel(one.data, one.options, sources);
-            if (sources[0].kind == LensSource::FROM_DIRECT && sources[0].rms > largestSoundError(one.data))
-                return format("already the direct images of camera %d, without any window, do not fit a lens (%.1f px): the "
-                              "target is not as --pattern and --size say, or its points were found wrongly", c + 1,
-                              sources[0].rms);
-        }
-        catch (const std::exception&) {}        // told elsewhere
+    {
+        const double px = errorOfDirect(input, c);
+        if (px > largestSoundError(oneCamera(input, c).data))
+            return format("already the direct images of camera %d, without any window, do not fit a lens (%.1f px): the "
+                          "target is not as --pattern and --size say, or its points were found wrongly", c + 1, px);
+    }
     return "";
 }
 

@@ -13,6 +13,9 @@ namespace tools {
 @param fewest views, above 0, that show it: of one alone the board may have moved by about a square */
 std::string partOfBoard(const CalibrationInput& input, size_t fewest);
 
+//! px RMS that a lens leaves of a camera's direct images; 0: there are none, or they are not asked for the lens.
+double errorOfDirect(const CalibrationInput& input, int camera);
+
 //! Corners in the direct images that no lens explains.
 std::string badCorners(const CalibrationInput& input);
 

@@ -1,7 +1,7 @@
 // This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
 // SPDX-License-Identifier: Apache-2.0
 
-#include "assess/image_noise.hpp"
+#include "measure/image_noise.hpp"
 #include "measure/eigen_matrix.hpp"
 #include "measure/view_observations.hpp"
 #include "console/failure.hpp"
