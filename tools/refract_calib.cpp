@@ -77,6 +77,7 @@ The same input gives the same bytes: outputs carry the time of the newest image 
 #include "console/lines.hpp"
 #include "console/outputs.hpp"
 #include "console/progress.hpp"
+#include "console/sha256.hpp"
 #include "console/table.hpp"
 #include "formats/point_table.hpp"
 #include "report/digest.hpp"
@@ -243,6 +244,21 @@ void noticeLiquidLayers(const Options& o, const RigOptions& rig, std::vector<std
         }
 }
 
+//! A lens that was given for two cameras may be a slip, and lenses of one kind differ by more than their +-.
+void noticeSharedLens(const Options& o, std::vector<std::string>& notices)
+{
+    std::map<std::string, int> first;
+    for (int k = 0; k < MAX_CAMERAS; k++)
+    {
+        if (o.camera[k].empty() || isOfRig(o.camera[k]))
+            continue;
+        const auto known = first.insert({sha256OfFile(o.camera[k]), k});
+        if (!known.second)
+            notices.push_back(format("--camera%s ('%s') is also that of camera %d: no two lenses are alike; give each its own, or direct "
+                                     "images of each", cameraSuffix(k).c_str(), o.camera[k].c_str(), known.first->second + 1));
+    }
+}
+
 //! Which window each camera looks through; empty: each has its own.
 std::vector<int> readWindowsOfCameras(const Options& o)
 {
@@ -372,6 +388,7 @@ void takeImages(const Options& o, const Target* target, RigImages sets, RigCalib
     }
     c.notices = noticesOf(sets, c.data);
     noticeLiquidLayers(o, c.options, c.notices);
+    noticeSharedLens(o, c.notices);
     if (!o.window.isDistanceSaid() && c.options.flags & GLASS_FREE_DISTANCE)
         c.options.window.distance = startDistance(c.data, c.square);
 }

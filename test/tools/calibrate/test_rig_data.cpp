@@ -198,6 +198,21 @@ TEST_CASE("Images of one camera that are given to another are refused", "[rig_da
         CHECK_THROWS_WITH(readRigImages(sources, nullptr, sizes, true), Catch::Contains("'a' of camera 2")
                           && Catch::Contains("the very pixels of 'a' of camera 1") && Catch::Contains(second));
     }
+    // Stored anew, a corner moves by some hundredths.
+    const auto write = [&](const char* view, double off) {
+        std::ofstream file(folder / "anew.csv");
+        file << "view,x,y,z,u,v\n";
+        for (int i = 0; i < 6; i++)
+            file << format("%s,%d,%d,0,%g,%g\n", view, i % 3, i/3, 100.5 + off + 20*(i % 3), 200.25 - off + 20*(i/3));
+    };
+    sources.glass[1] = folder / "anew.csv";
+    write("a", 0.05);
+    CHECK_THROWS_WITH(readRigImages(sources, nullptr, sizes, true), Catch::Contains("'a' of camera 2")
+                      && Catch::Contains("the pixels (to 0.1 px) of 'a' of camera 1"));
+    write("a", 0.3);
+    CHECK_NOTHROW(readRigImages(sources, nullptr, sizes, true));
+    write("b", 0.05);           // of another moment, by chance
+    CHECK_NOTHROW(readRigImages(sources, nullptr, sizes, true));
     sources.glass[1].clear();
     sources.direct[0] = folder / "two.csv";
     CHECK_THROWS_WITH(readRigImages(sources, nullptr, sizes, true), Catch::Contains("'a' of --glass")

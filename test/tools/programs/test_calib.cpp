@@ -375,6 +375,7 @@ TEST_CASE("The file of a lens serves for two cameras that have one like it", "[c
     INFO(r.out << r.err);
     CHECK_FALSE(mentions(r.err, "holds no camera"));
     CHECK(mentions(r.err, "the images contradict --camera2"));
+    CHECK(mentions(r.out + r.err, "is also that of camera 1"));
 }
 
 TEST_CASE("A forgotten medium is named, of one camera too", "[calib_tool]")

@@ -34,11 +34,20 @@ size_t countSame(const std::vector<cv::Point2d>& pixels, const std::vector<cv::P
     return count;
 }
 
+//! In the order of x.
 std::vector<cv::Point2d> seenOf(const std::vector<cv::Point2d>& pixels)
 {
     std::vector<cv::Point2d> some;
     std::copy_if(pixels.begin(), pixels.end(), std::back_inserter(some), [](const cv::Point2d& p) { return seen(p); });
+    std::sort(some.begin(), some.end(), [](const cv::Point2d& a, const cv::Point2d& b) { return a.x < b.x; });
     return some;
+}
+
+//! @param pixels, others in the order of x
+bool areSame(const std::vector<cv::Point2d>& pixels, const std::vector<cv::Point2d>& others, double tolerance)
+{
+    const size_t half = std::min(pixels.size(), others.size())/2;
+    return countSame(pixels, others, tolerance) >= std::max(FEWEST, half + 1);
 }
 
 } // namespace
@@ -102,18 +111,17 @@ const CalibrationImage* findImage(const std::vector<CalibrationImage>& images, i
                                   double tolerance)
 {
     const cv::Point2d mean = meanOfSeen(pixels);
-    std::vector<cv::Point2d> sorted = seenOf(pixels);
-    std::sort(sorted.begin(), sorted.end(), [](const cv::Point2d& a, const cv::Point2d& b) { return a.x < b.x; });
+    const std::vector<cv::Point2d> sorted = seenOf(pixels);
     for (const CalibrationImage& image : images)
-    {
-        if (image.camera != camera)
-            continue;
-        const size_t half = std::min(image.pixels.size(), sorted.size())/2;
-        if (image.pixels.empty() ? cv::norm(image.mean - mean) < SAME_MEAN      // false for NaN
-                                 : countSame(image.pixels, sorted, tolerance) >= std::max(FEWEST, half + 1))
+        if (image.camera == camera && (image.pixels.empty() ? cv::norm(image.mean - mean) < SAME_MEAN       // false for NaN
+                                                            : areSame(image.pixels, sorted, tolerance)))
             return &image;
-    }
     return nullptr;
+}
+
+bool areOfOneImage(const std::vector<cv::Point2d>& first, const std::vector<cv::Point2d>& second, double tolerance)
+{
+    return areSame(seenOf(first), seenOf(second), tolerance);
 }
 
 } // namespace tools

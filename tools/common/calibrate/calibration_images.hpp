@@ -31,14 +31,17 @@ double sameImageTolerance(double pixelSigma);
 //! As they go into the file: with the hashes of those that are files.
 std::vector<CalibrationImage> withHashes(const std::vector<UsedImage>& used);
 
+/** Whether two images show the target in the same pixels, whatever their names and numbers are.
+@param tolerance px, by which more than half of them may be off */
+bool areOfOneImage(const std::vector<cv::Point2d>& first, const std::vector<cv::Point2d>& second, double tolerance);
+
 //! The middle of the pixels that are seen; NaN: none is.
 cv::Point2d meanOfSeen(const std::vector<cv::Point2d>& pixels);
 
 //! The image with these bytes; null: none.
 const CalibrationImage* findImage(const std::vector<CalibrationImage>& images, const std::string& sha256);
 
-/** The image of a camera that shows the target where these pixels do, whatever their names and numbers are; null: none.
-@param tolerance px, by which more than half of them may be off */
+//! The image of a camera that shows the target where these pixels do (areOfOneImage); null: none.
 const CalibrationImage* findImage(const std::vector<CalibrationImage>& images, int camera, const std::vector<cv::Point2d>& pixels,
                                   double tolerance);
 

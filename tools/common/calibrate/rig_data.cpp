@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "calibrate/rig_data.hpp"
+#include "calibrate/calibration_images.hpp"
 #include "console/failure.hpp"
 #include "console/frames.hpp"
 #include "console/options.hpp"
@@ -136,32 +137,54 @@ std::vector<int> allViews(const RigData& data)
 
 namespace {
 
-//! No two cameras see a target in the same pixels to the last digit, nor does one without and with its window.
-void requireOwnImages(const RigImages& sets)
+struct GivenImage
 {
-    struct Known { int camera; bool glass; const DetectedImage* image; };
-    std::map<std::vector<std::pair<double, double>>, Known> known;
+    int camera;
+    bool glass;
+    const DetectedImage* image;
+};
+
+[[noreturn]] void refuseSame(const GivenImage& given, const GivenImage& first, const char* where)
+{
+    const bool cameras = first.camera != given.camera;
+    const auto of = [&](const GivenImage& g) {
+        return cameras ? cv::format("camera %d", g.camera + 1) : (g.glass ? "--glass" : "--direct") + cameraSuffix(g.camera); };
+    throw Failure(cv::format("'%s' of %s ('%s') shows the target in %s of '%s' of %s ('%s'): give each %s its own images",
+                             given.image->stem.c_str(), of(given).c_str(), given.image->path.c_str(), where, first.image->stem.c_str(),
+                             of(first).c_str(), first.image->path.c_str(), cameras ? "camera" : "option"));
+}
+
+std::vector<GivenImage> imagesOf(const RigImages& sets)
+{
+    std::vector<GivenImage> images;
     for (int c = 0; c < MAX_CAMERAS; c++)
         for (bool glass : {false, true})
             for (const DetectedImage& image : (glass ? sets.glass : sets.direct)[c].images)
-            {
-                std::vector<std::pair<double, double>> pixels;
-                for (const Point2d& p : image.points)
-                    if (p.x == p.x)
-                        pixels.emplace_back(p.x, p.y);
-                if ((int)pixels.size() < MIN_POSE_POINTS)
-                    continue;
-                const Known& first = known.insert({pixels, {c, glass, &image}}).first->second;
-                if (first.camera == c && first.glass == glass)
-                    continue;
-                const auto of = [&](int camera, bool isGlass) {
-                    return first.camera != c ? cv::format("camera %d", camera + 1)
-                                             : (isGlass ? "--glass" : "--direct") + cameraSuffix(camera); };
-                throw Failure(cv::format("'%s' of %s ('%s') shows the target in the very pixels of '%s' of %s ('%s'): give each %s its own "
-                                         "images", image.stem.c_str(), of(c, glass).c_str(), image.path.c_str(),
-                                         first.image->stem.c_str(), of(first.camera, first.glass).c_str(), first.image->path.c_str(),
-                                         first.camera != c ? "camera" : "option"));
-            }
+                if (image.seenCount() >= MIN_POSE_POINTS)
+                    images.push_back({c, glass, &image});
+    return images;
+}
+
+/** No two cameras see a target in the same pixels, nor does one without and with its window. To the last digit that is said of any two
+images; of one moment, of two cameras, also where the image was stored anew. */
+void requireOwnImages(const RigImages& sets)
+{
+    std::map<std::vector<std::pair<double, double>>, GivenImage> known;
+    std::map<std::string, std::vector<GivenImage>> ofMoment;
+    for (const GivenImage& given : imagesOf(sets))
+    {
+        std::vector<std::pair<double, double>> pixels;
+        for (const Point2d& p : given.image->points)
+            if (p.x == p.x)
+                pixels.emplace_back(p.x, p.y);
+        const GivenImage& first = known.insert({pixels, given}).first->second;
+        if (first.camera != given.camera || first.glass != given.glass)
+            refuseSame(given, first, "the very pixels");
+        for (const GivenImage& other : ofMoment[given.image->stem])
+            if (other.camera != given.camera && areOfOneImage(other.image->points, given.image->points, USUAL_TOLERANCE))
+                refuseSame(given, other, "the pixels (to 0.1 px)");
+        ofMoment[given.image->stem].push_back(given);
+    }
 }
 
 //! By the part of its path that the user says.
