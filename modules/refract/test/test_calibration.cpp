@@ -99,11 +99,11 @@ TEST(Refract_SelectLensCoefficients, finds_k1_and_k2)
     }
     const int flags = selectLensCoefficients(boards(), direct, std::vector<std::vector<Mat> >(), cameras, std::vector<int>(),
                                              noArray(), noArray(), 0, scores);
-    EXPECT_EQ(Size(4, 6), scores.size());
-    EXPECT_TRUE((flags & GLASS_FIX_TANGENT_DIST) != 0);
+    EXPECT_EQ(Size(4, 8), scores.size());
+    EXPECT_TRUE((flags & GLASS_FIX_K4) != 0);
     EXPECT_TRUE((flags & GLASS_FIX_K1) == 0);
     EXPECT_NEAR(-0.41, cameras[0]->distCoeffs().at<double>(0), 0.1);
-    EXPECT_EQ(0, cameras[0]->distCoeffs().at<double>(2));
+    EXPECT_EQ(0, cameras[0]->distCoeffs().at<double>(5));
     EXPECT_GT(scores.at<double>(0, 2), 2*scores.at<double>(2, 2));
     EXPECT_REFUSED(selectLensCoefficients(boards(), direct, std::vector<std::vector<Mat> >(), cameras, std::vector<int>(),
                                           noArray(), noArray(), GLASS_USE_POSES), "has no meaning here");

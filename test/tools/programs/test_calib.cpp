@@ -535,7 +535,7 @@ TEST_CASE("refract_calib ends with 1 and the likely mistake if nothing fits", "[
         {board + " --square=39" + images + " --thickness=2 --index=1.5437 --exact" + known + out + " --no-robust", "in place of 2,"},
         {board + " --square=39 --direct=" + f / "direct1.vnl" + " --glass=" + f / "other.vnl" + PANE + known + out, "--unpaired"},
         {board + " --square=39 --direct=" + f / "direct1.vnl" + " --glass=" + f / "direct1.vnl" + PANE + known + out,
-         "one image"},
+         "in the very pixels"},
     };
     const std::string glass = readFile(f / "glass1.vnl");       // under other names
     std::string other;

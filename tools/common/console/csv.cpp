@@ -89,13 +89,17 @@ char separatorOf(const std::string& heading)
 //! Names of columns are told from each other whatever their case is. @param known names, spelt as they are asked for
 std::vector<std::string> namesOf(const std::string& heading, const std::vector<std::string>& known)
 {
-    std::vector<std::string> names = cellsOf(heading, separatorOf(heading));
-    for (std::string& name : names)
+    const std::vector<std::string> given = cellsOf(heading, separatorOf(heading));
+    std::vector<std::string> names, lower;
+    for (const std::string& name : given)
+        lower.push_back(inLowerCase(name));
+    for (size_t i = 0; i < given.size(); i++)
     {
-        name = inLowerCase(name);
+        const bool isOne = std::count(lower.begin(), lower.end(), lower[i]) == 1;      // X beside x is another
+        names.push_back(isOne ? lower[i] : given[i]);
         for (const std::string& one : known)
-            if (inLowerCase(one) == name)
-                name = one;
+            if (isOne && inLowerCase(one) == lower[i])
+                names.back() = one;
     }
     return names;
 }

@@ -152,7 +152,7 @@ std::string Frames::stem(int i) const
 //! Of a video or of numbered images their number.
 std::vector<std::string> Frames::moments() const
 {
-    if (!viewPattern_.empty() && !isVideo())
+    if (hasPattern())
         return momentsByPattern(files_, viewPattern_);
     if (!numbered())
         return viewNames(files_);
@@ -194,7 +194,8 @@ std::vector<Moment> momentsOf(const std::vector<const Frames*>& cameras)
     std::vector<std::vector<std::string>> names;
     for (const Frames* frames : cameras)
         names.push_back(frames->moments());
-    takeOffCameras(names);
+    if (std::none_of(cameras.begin(), cameras.end(), [](const Frames* frames) { return frames->hasPattern(); }))
+        takeOffCameras(names);          // a pattern says what the moment is
     for (int c = 0; c < count; c++)
     {
         for (int k = 0; k < c; k++)

@@ -24,6 +24,7 @@ public:
     //! Without a name of its own, but with a number: of a video or of numbered images.
     bool numbered() const { return isVideo() || !numbers_.empty(); }
     bool isVideo() const { return files_.empty(); }
+    bool hasPattern() const { return !viewPattern_.empty() && !isVideo(); }
 
     //! What its results are called: the file's stem, or frame000012.
     std::string stem(int i) const;

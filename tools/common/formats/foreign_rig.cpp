@@ -63,7 +63,9 @@ std::string withoutNaN(const std::string& text)
     bool quoted = false;
     for (size_t i = 0; i < text.size(); i++)
     {
-        if (text[i] == '"' && (i == 0 || text[i - 1] != '\\'))
+        if (quoted && text[i] == '\\' && i + 1 < text.size())
+            result += text[i++];            // with what it escapes
+        else if (text[i] == '"')
             quoted = !quoted;
         size_t length = 0;
         for (const char* const word : {"NaN", "Infinity", "-Infinity"})

@@ -1505,9 +1505,10 @@ CV_EXPORTS_W double calibrateGlassRig(InputArrayOfArrays objectPoints,
 Candidates are the lens without coefficients, with k1, with k1 and k2, with p1 and p2 too, then k3, k4, k5, k6, and so on,
 as far as the cameras' lenses have them. Each is fitted, and each view is held out in turn: its error, its pose fitted to it,
 is that of the fit to the other views (to first order, without fitting again). If there are fewer than 4 views, eighths of each
-target are held out, their poses fitted to the others. The candidate with the least held-out error is chosen. Those with k4 to
-k6 have to be better by a standard error of the difference; of them the one with most coefficients that is not worse by as much
-is chosen. A fit that came to no end counts as it is.
+target are held out, their poses fitted to the others. The candidate with the least held-out error is chosen; by eighths, that
+with the fewest coefficients which is at most 2 % and one standard error of the difference above it. Those with k4 to k6 have to
+be better by a standard error; of them the one with most coefficients that is not worse by as much is chosen. A fit that came to
+no end counts as it is.
 
 Give the images without the window, if there are enough of them (10 or more): only these, with cameras without a window, each
 view seen by one camera. Then no window is fitted. Otherwise give the images through the windows.
@@ -1524,7 +1525,7 @@ Result: the lens that is chosen; its other coefficients are 0. The windows stay 
 left out that are more than 5 standard deviations from the fit of the richest candidate. Known poses and prior knowledge are
 not used.
 @param scores Nx4 CV_64F, one row per candidate: its flags (GLASS_FIX_...), its number of coefficients, its held-out RMS error
-in pixels, and the standard error of the difference of this error from the best; NaN: it did not converge.
+in pixels, and the standard error of the difference of this error from the best; NaN: it cannot be fitted, or predicts no part.
 @return the flags (GLASS_FIX_...) of the chosen candidate, to be added to those of the calibration. Throws as calibrateGlassRig
 if no candidate can be fitted.
 */

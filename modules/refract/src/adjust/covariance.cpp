@@ -182,6 +182,9 @@ FitOutcome Covariance::compute(const Problem& problem, double variance, int requ
     problem_ = &problem;
     variance_ = variance;
     information_ = informationOf(problem);
+    // An image without derivatives: what the others tell is not all.
+    if (!information_.residual.allFinite() || !information_.poses.residual.allFinite())
+        return FitOutcome(FitOutcome::MAX_ITERATIONS);
     const std::vector<FreeParameter> parameters = freeParameters(problem, required);
     const FreeSpace space(problem);
     if (information_.poses.factor.lost() >= 0)

@@ -163,18 +163,22 @@ void Minimization::solve(TrustRegion& region, const std::vector<double*>& state)
 //! Of predicted ones, px: a camera far from the scene's origin loses digits of where its points are.
 static double roundingOfPixels(const Problem& problem)
 {
-    const double LEAST = 1e-12;
+    const double LEAST = 1e-12, MOST = 1e-8;        // beyond it the scene's origin is to be moved
     double most = LEAST;
+    const Rig rig = problem.rig();
     for (const Image& image : problem.images())
     {
         const Pose pose = problem.pose(image.view);
-        if (image.points.object.empty() || !pose.found)
+        const size_t row = std::find_if(image.rootWeights.begin(), image.rootWeights.end(), [](double w) { return w > 0; })
+                           - image.rootWeights.begin();
+        if (row == image.rootWeights.size() || !pose.found)
             continue;
-        const Vec3d X(image.points.object[0]), inCamera = rotationMatrix(pose.rvec)*X + pose.tvec;
-        const double focalLength = problem.camera(image.camera).lens().parameters()[0];
+        const Vec3d X = problem.sceneScale()*Vec3d(image.points.object[row]), inCamera1 = rotationMatrix(pose.rvec)*X + pose.tvec;
+        const Vec3d inCamera = TransformWithDerivatives(rig.extrinsics[image.camera]).apply(inCamera1);
+        const double focalLength = rig.cameras[image.camera].lens().parameters()[0];
         most = std::max(most, DBL_EPSILON*std::max(norm(X), norm(pose.tvec))*focalLength/norm(inCamera));
     }
-    return most;
+    return std::min(most, MOST);
 }
 
 void Minimization::descend(TrustRegion& region)

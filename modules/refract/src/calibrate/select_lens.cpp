@@ -6,9 +6,10 @@
 its errors on parts of the observations that are held out in turn (adjust/held_out.hpp). More coefficients always fit better what
 they are fitted to; held out they are worse from the number on that the data do not determine.
 
-The best of them is chosen. The simplest that is not proven to be worse would fit about as well, but what it leaves out is then in the
-images, and in no standard deviation. Only the step to a rational lens, which bends without limit what no image shows, has to be proven:
-by one standard error, as Breiman et al. prune (Classification and Regression Trees, 1984). What one of its coefficients leaves out another
+The best of them is chosen. The simplest that is not proven to be worse (by one standard error, as Breiman et al., Classification and
+Regression Trees, 1984, prune) would fit about as well, but what it leaves out is then in the images, and in no standard deviation. It is
+chosen where parts of targets are held out: these are seen with what is around them, and do not tell what a lens does farther out. The step
+to a rational lens, which bends without limit what no image shows, has to be proven, too. What one of its coefficients leaves out another
 takes up, nearly, and at other depths not: of rational lenses the richest is chosen that is not proven to be worse. */
 
 #include "adjust/covariance.hpp"
@@ -24,6 +25,8 @@ namespace cv { namespace refract {
 
 namespace {
 
+const double MOST_ABOVE_BEST = 1.02;    // held-out RMS of what is chosen by parts of targets
+const double PERFECT = 1e-6;            // px: of exact data all lenses that can are as good, and differ in their rounding
 const int START_POINTS = 150;           // of a target, to find where windows and cameras are
 const int ROUNDS = 3;                   // of leaving outliers out
 const double OUTLIER = 5;               // in standard deviations
@@ -66,9 +69,13 @@ bool isRational(const Rig& rig, int flags)
     {
         const std::vector<String> names = camera.lens().parameterNames();
         const std::vector<bool> isFree = freeLens(camera, flags | GLASS_FREE_INTRINSICS);
-        const size_t k4 = std::find(names.begin(), names.end(), "k4") - names.begin();
+        const auto isFreeOf = [&](const char* name)
+        {
+            const size_t at = std::find(names.begin(), names.end(), name) - names.begin();
+            return at < isFree.size() && isFree[at];
+        };
         const bool mayBe = std::find(names.begin(), names.end(), "k5") != names.end();     // a fisheye's k4 is the last
-        if (mayBe && isFree[k4])
+        if (mayBe && (isFreeOf("k4") || isFreeOf("k5") || isFreeOf("k6")))
             return true;
     }
     return false;
@@ -122,6 +129,14 @@ double standardError(const Candidate& a, const Candidate& b)
     return std::sqrt(variance*count/std::max(1., count - 1));
 }
 
+double unseen(const Candidate& candidate) { return PERFECT*PERFECT*pointsOf(candidate.parts); }
+
+//! Proven, by a standard error.
+bool isWorse(const Candidate& a, const Candidate& b)
+{
+    return a.squares - b.squares > std::max(standardError(a, b), unseen(a));
+}
+
 class LensSelection
 {
 public:
@@ -147,33 +162,41 @@ public:
     const std::vector<Candidate>& candidates() const { return candidates_; }
     const Candidate& choice() const
     {
-        const Candidate* const polynomial = best(false), * const rational = best(true);
-        const bool isProven = !polynomial ||
-            (rational && polynomial->squares - rational->squares > standardError(*polynomial, *rational));
-        return isProven ? richest(*rational) : *polynomial;
+        const Candidate* const polynomial = least(false), * const rational = least(true);
+        if (!polynomial || (rational && isWorse(*polynomial, *rational)))
+            return richest(*rational);
+        return task_.views.count() >= MIN_HELD_OUT_VIEWS ? *polynomial : simplest(*polynomial);
     }
-    //! That is not proven to be worse.
+private:
+    //! Nothing if none was fitted.
+    const Candidate* least(bool isRational) const
+    {
+        const Candidate* least = nullptr;
+        for (const Candidate& c : candidates_)
+            if (c.isFitted && c.isRational == isRational && (!least || c.squares < least->squares - unseen(c)))
+                least = &c;
+        return least;
+    }
     const Candidate& richest(const Candidate& rational) const
     {
         const auto isAsGood = [&](const Candidate& c)
         {
-            return c.isFitted && c.isConverged && c.squares - rational.squares <= standardError(c, rational);
+            const bool isOfK6 = c.isRational && (c.flags & PRISM) == PRISM;
+            return isOfK6 && c.isFitted && c.isConverged && c.determined.converged() && !isWorse(c, rational);
         };
         const auto found = std::find_if(candidates_.rbegin(), candidates_.rend(), isAsGood);
         return found != candidates_.rend() && found->coefficients > rational.coefficients ? *found : rational;
     }
-    //! Nothing if none was fitted.
-    const Candidate* best(bool isRational) const
+    const Candidate& simplest(const Candidate& polynomial) const
     {
-        const double PERFECT = 1e-6;    // px: all lenses that can are as good, and differ in their rounding
-        const Candidate* least = nullptr;
-        for (const Candidate& c : candidates_)
-            if (c.isFitted && c.isRational == isRational && (!least || c.squares < least->squares - PERFECT*PERFECT*pointsOf(c.parts)))
-                least = &c;
-        return least;
+        const double most = std::pow(MOST_ABOVE_BEST, 2)*polynomial.squares + unseen(polynomial);
+        const Candidate& enough = *std::find_if(candidates_.begin(), candidates_.end(), [&](const Candidate& c)
+                                                { return c.isFitted && !c.isRational && !isWorse(c, polynomial) && c.squares <= most; });
+        // One that is simpler may miss that by a hair and be better.
+        return *std::find_if(candidates_.begin(), candidates_.end(), [&](const Candidate& c)
+                             { return c.isFitted && !c.isRational && c.squares <= enough.squares; });
     }
 
-private:
     int flagsOf(const Candidate& candidate) const
     {
         return task_.flags | candidate.flags | (hasWindow() ? 0 : GLASS_FIX_NORMAL);
@@ -239,7 +262,10 @@ private:
         for (size_t i = first + 1; i < candidates_.size(); i++)
             if (fit(candidates_[i], from).converged())
                 from = candidates_[i].fitted;
-        return std::any_of(candidates_.begin(), candidates_.end(), [](const Candidate& c) { return c.isFitted; }) ? FitOutcome() : outcome;
+        if (std::any_of(candidates_.begin(), candidates_.end(), [](const Candidate& c) { return c.isFitted; }))
+            return FitOutcome();
+        // Without some part of the images none is determined.
+        return outcome.converged() ? FitOutcome(FitOutcome::TOO_FEW_EQUATIONS) : outcome;
     }
 
     FitOutcome fit(Candidate& candidate, const RigStart& from)

@@ -471,8 +471,8 @@ class refract_test(NewOpenCVTests):
         views = [view + random.normal(0, 0.05, view.shape) for view in make_views(bare)]
         camera = cv.refract.RefractiveCamera.create(K, np.zeros(8))
         flags, scores = cv.refract.selectLensCoefficients([make_board()]*5, [views], [], [camera], [], [], [])
-        self.assertEqual((6, 4), scores.shape)
-        self.assertEqual(cv.refract.GLASS_FIX_TANGENT_DIST, flags & cv.refract.GLASS_FIX_TANGENT_DIST)
+        self.assertEqual((8, 4), scores.shape)
+        self.assertEqual(cv.refract.GLASS_FIX_K4, flags & cv.refract.GLASS_FIX_K4)
         self.assertIn(flags, scores[:, 0])
         self.assertClose(-0.41, camera.distCoeffs()[0, 0], 0.1)
 
