@@ -191,8 +191,6 @@ void adjusted(const std::function<void()>& adjust)
     }
     catch (const cv::Exception& e)
     {
-        if (e.code != Error::StsAssert)
-            throw;                      // an argument: its sentence says it
         throw Failure(e.err + ": an adjustment must not come to that; " + LEAVE_OUT);
     }
 }
