@@ -350,6 +350,40 @@ TEST_CASE("A strip of four times as many views takes as many steps, and four tim
     CHECK(four.gain < 1e-9);
 }
 
+TEST_CASE("A strip far from its origin converges to what it is near it", "[bundle][sparse]")
+{
+    CAPTURE(seed());
+    Random random(49);
+    const RigTruth truth = makeRig(1, { 0 }, 1.333);
+    const BundleScene scene = makeStrip(truth, 24, random, 0.1);
+    const BundleCall start(truth, scene, random);
+    ListCall origin(start);
+    const double rms = origin.run(GLASS_FREE_DISTANCE);
+    for (const double far : { 1e6, 1e7 })
+    {
+        CAPTURE(far);
+        ListCall farCall(start);
+        const Vec3d shift(far, 0.5*far, 0);
+        for (size_t view = 0; view < farCall.call.rvecs.size(); view++)
+        {
+            Matx33d R;
+            Rodrigues(farCall.call.rvecs[view], R);
+            farCall.call.tvecs[view] = farCall.call.tvecs[view] - Mat(R*shift);
+        }
+        CHECK(farCall.run(GLASS_FREE_DISTANCE) == Approx(rms).epsilon(1e-6));
+        double largest = 0;
+        int seen = 0;
+        for (size_t i = 0; i < origin.call.points.size(); i++)
+            if (std::isfinite(origin.call.points[i].x))
+            {
+                seen++;
+                largest = std::max(largest, norm(farCall.call.points[i] - Point3d(shift) - origin.call.points[i]));
+            }
+        CHECK(seen > 250);
+        CHECK(largest < 0.02);
+    }
+}
+
 TEST_CASE("A strip's results do not depend on the number of threads", "[bundle][sparse]")
 {
     Random random(46);

@@ -44,7 +44,7 @@ void DampedSteps::run(ReducedCost& cost)
         cost.setStep(dampedStep(cost.information(), damping, foretold));
         // Too little to matter, or to be seen: of exact data, also of those that were printed with some digits, it is rounding.
         const double unseen = unseenOf(squares, equations, rounding);
-        const double negligible = std::max(leastGain, std::min(std::max(0.1*change, LEFT_BY_POINTS), LEFT_OF_NOISE/equations));
+        const double negligible = std::max(leastGain, std::min(0.1*change, LEFT_OF_NOISE/equations));
         if (foretold <= std::max(squares*negligible, unseen))
         {
             cost.restore();

@@ -39,8 +39,6 @@ double describeError(const Problem& problem, const Image& image, int column, Rig
     return squares;
 }
 
-namespace {
-
 FitOutcome checkFreedom(const Problem& problem)
 {
     FitOutcome outcome(problem.freedom() > 0 ? FitOutcome::CONVERGED : FitOutcome::TOO_FEW_EQUATIONS);
@@ -48,6 +46,8 @@ FitOutcome checkFreedom(const Problem& problem)
     outcome.expected = problem.unknownCount() + 1;
     return outcome;
 }
+
+namespace {
 
 //! Its error, and which points of the target it has.
 double describeImage(const Problem& problem, const Image& image, int column, int pointCount, RigFit& fit)

@@ -36,6 +36,9 @@ FitOutcome findStart(const Rig& rig, RigTask& task, RigStart& start, std::vector
 //! Starts, fit, and what it tells. rig is start and result; it and fit mean nothing unless the outcome is CONVERGED.
 FitOutcome fitRig(Rig& rig, const RigTask& task, RigFit& fit);
 
+//! Whether there are more equations than unknowns.
+FitOutcome checkFreedom(const Problem& problem);
+
 //! What a calibration and a bundle adjustment tell of one image alike: its RMS. Returns its squares.
 double describeError(const Problem& problem, const Image& image, int column, RigFit& fit);
 

@@ -20,6 +20,7 @@ takes up, nearly, and at other depths not: of rational lenses the richest is cho
 #include "calibrate/failure.hpp"
 #include "calibrate/near_task.hpp"
 #include "calibrate/rig_fit.hpp"
+#include "math/robust_scale.hpp"
 
 namespace cv { namespace refract {
 
@@ -167,6 +168,7 @@ public:
             return richest(*rational);
         return task_.views.count() >= MIN_HELD_OUT_VIEWS ? *polynomial : simplest(*polynomial);
     }
+
 private:
     //! Nothing if none was fitted.
     const Candidate* least(bool isRational) const
@@ -264,8 +266,16 @@ private:
                 from = candidates_[i].fitted;
         if (std::any_of(candidates_.begin(), candidates_.end(), [](const Candidate& c) { return c.isFitted; }))
             return FitOutcome();
-        // Without some part of the images none is determined.
-        return outcome.converged() ? FitOutcome(FitOutcome::TOO_FEW_EQUATIONS) : outcome;
+        return outcome.converged() ? notHeldOut() : outcome;
+    }
+
+    static FitOutcome notHeldOut()
+    {
+        const double NaN = std::numeric_limits<double>::quiet_NaN();
+        FitOutcome outcome(FitOutcome::UNDETERMINED);
+        outcome.parameters = { { "a lens when one of them is left out", NaN, NaN } };
+        outcome.dimension = 1;
+        return outcome;
     }
 
     FitOutcome fit(Candidate& candidate, const RigStart& from)
@@ -286,7 +296,9 @@ private:
         Problem problem(start.rig, task_.views, start.poses, std::vector<PosePrior>(), std::vector<CameraPrior>(), flags);
         for (size_t i = 0; i < weights_.size(); i++)
             problem.setRootWeights((int)i, weights_[i]);
-        FitOutcome outcome = problem.freedom() > 0 ? minimize(problem, criteria) : FitOutcome(FitOutcome::TOO_FEW_EQUATIONS);
+        FitOutcome outcome = checkFreedom(problem);
+        if (outcome.converged())
+            outcome = minimize(problem, criteria);
         candidate.isFitted = false;
         candidate.isConverged = outcome.converged();
         if (!outcome.isUsable())
@@ -315,8 +327,7 @@ private:
             for (double error : image)
                 if (std::isfinite(error))
                     all.push_back(error);
-        std::nth_element(all.begin(), all.begin() + all.size()/2, all.end());
-        const double median = all[all.size()/2], sigma = median/std::sqrt(2*std::log(2.));
+        const double sigma = median(all)/std::sqrt(2*std::log(2.));
         std::vector<std::vector<double> > weights;
         for (const std::vector<double>& image : errors)
         {
