@@ -8,6 +8,7 @@
 #include "console/cli.hpp"
 #include "console/file_output.hpp"
 #include "console/outputs.hpp"
+#include "console/view_names.hpp"
 #include "formats/point_table.hpp"
 #include "match/moved_rig.hpp"
 #include "match/scene_matches.hpp"

@@ -6,6 +6,7 @@
 #include "console/file_output.hpp"
 #include "console/outputs.hpp"
 #include "console/table.hpp"
+#include "console/view_names.hpp"
 #include "match/depth_range.hpp"
 #include "match/features.hpp"
 #include "match/scene_matches.hpp"

@@ -4,7 +4,6 @@
 #include "calibrate/rig_data.hpp"
 #include "calibrate/calibration_images.hpp"
 #include "console/failure.hpp"
-#include "console/frames.hpp"
 #include "console/options.hpp"
 #include "console/table.hpp"
 #include "console/view_names.hpp"

@@ -4,7 +4,6 @@
 #include "console/frames.hpp"
 #include "console/failure.hpp"
 #include "console/images.hpp"
-#include "console/options.hpp"
 #include "console/view_names.hpp"
 
 #include <opencv2/core/utils/logger.hpp>
@@ -103,12 +102,6 @@ void requireEqualLength(const Frames& first, const Frames& second)
 }
 
 } // namespace
-
-Option addViewPattern(OptionParser& parser, std::string& pattern)
-{
-    return parser.add("--view-pattern", pattern,
-                      "where names of images have the moment: {}, and * for anything, as in cam*_{}_raw or {}/*");
-}
 
 Frames::Frames(const std::string& source, const std::string& viewPattern) : source_(source), viewPattern_(viewPattern)
 {

@@ -49,12 +49,6 @@ private:
     int count_ = 0, next_ = 0;
 };
 
-class Option;
-class OptionParser;
-
-//! --view-pattern
-Option addViewPattern(OptionParser& parser, std::string& pattern);
-
 //! What several cameras took at one moment.
 struct Moment
 {

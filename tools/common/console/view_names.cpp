@@ -4,6 +4,7 @@
 #include "console/view_names.hpp"
 #include "console/failure.hpp"
 #include "console/images.hpp"
+#include "console/options.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -95,6 +96,12 @@ std::string momentOf(const std::string& path, const std::string& pattern)
     for (auto left = std::count(pattern.begin(), pattern.end(), '/'); left > 0; left--, folder = folder.parent_path())
         name = folder.filename().generic_string() + "/" + name;
     return isOfForm(pattern.c_str(), name, moment) ? moment : "";
+}
+
+Option addViewPattern(OptionParser& parser, std::string& pattern)
+{
+    return parser.add("--view-pattern", pattern,
+                      "where names of images have the moment: {}, and * for anything, as in cam*_{}_raw or {}/*");
 }
 
 std::vector<std::string> momentsByPattern(const std::vector<std::string>& paths, const std::string& pattern)

@@ -10,6 +10,9 @@
 /* What images of one moment are found by, for all tools: equal names. */
 namespace tools {
 
+class Option;
+class OptionParser;
+
 //! The stems of files; where two are equal, their folders too, as far as these differ: 0001/left, 0002/left.
 std::vector<std::string> viewNames(const std::vector<std::string>& paths);
 
@@ -24,6 +27,9 @@ void takeOffCameras(std::vector<std::vector<std::string>>& names);
 extension, and of as many folders as the pattern has. The first * take as little, and {} as much as there is. Empty: the name is not of
 this form. */
 std::string momentOf(const std::string& path, const std::string& pattern);
+
+//! --view-pattern
+Option addViewPattern(OptionParser& parser, std::string& pattern);
 
 //! Of all images of a camera. Throws Failure where the pattern has no {}, or where a name is not of it or says a moment again.
 std::vector<std::string> momentsByPattern(const std::vector<std::string>& paths, const std::string& pattern);

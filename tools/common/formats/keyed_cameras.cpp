@@ -42,13 +42,13 @@ std::string nameIn(const Json& map, const Names& names, const std::string& endin
 
 std::vector<double> neededNumbers(const Json& map, const std::string& name, size_t count)
 {
-    const std::vector<double> numbers = numbersOf(map.at(name));
     const Json& value = map.at(name);
+    const std::vector<double> numbers = numbersOf(value);
+    if (numbers.size() == count)
+        return numbers;
     const std::string has = value.isText() ? ", and is '" + value.asText() + "'"
         : numbers.empty() ? ", and what it has is none or no number (nan)" : ", and has " + std::to_string(numbers.size());
-    if (numbers.size() != count)
-        throw Failure("its " + name + " must have " + std::to_string(count) + " numbers" + has);
-    return numbers;
+    throw Failure("its " + name + " must have " + std::to_string(count) + " numbers" + has);
 }
 
 Matx33d neededMatrix(const Json& map, const std::string& name) { return Matx33d(neededNumbers(map, name, 9).data()); }

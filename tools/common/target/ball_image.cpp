@@ -230,11 +230,12 @@ double centreStd(const BallModel& model, const Normal& normal)
     const int FAR = 3;                  // pixels, over which noise is tied
     const double white = normal.squares/(model.pixels() - BallModel::COUNT);
     const Mat_<double> residuals = normal.at.reshape(1, model.rows());
+    const Mat inverse(normal.H.inv(DECOMP_SVD));
     std::vector<Mat_<double>> slopes, moves;        // of each parameter: of pixels by it, of it by pixels
     for (int k = 0; k < BallModel::COUNT; k++)
     {
         slopes.push_back(Mat(normal.J.col(k).clone()).reshape(1, model.rows()));
-        moves.push_back(Mat(normal.J*Mat(normal.H.inv(DECOMP_SVD)).col(k)).reshape(1, model.rows()));
+        moves.push_back(Mat(normal.J*inverse.col(k)).reshape(1, model.rows()));
     }
     double variance = 0.;
     for (int y = -FAR; y <= FAR; y++)
