@@ -71,8 +71,9 @@ void Command::warn(const std::string& text) const
 
 int runTool(int argc, char** argv, const std::string& manual, const std::function<int(Command&)>& body)
 {
-    // What goes wrong is said once, in the exception; OpenCV's log would repeat it in its own words.
-    cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
+    // What goes wrong is said once, in the exception; OpenCV's log would repeat it in its own words, and does to those who ask it to.
+    if (!std::getenv("OPENCV_LOG_LEVEL"))
+        cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
     Command command(argc, argv, manual);
     const auto sayRotated = [&command] {
         const std::string turned = takeRotationNotice();

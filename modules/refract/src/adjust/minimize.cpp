@@ -22,6 +22,7 @@ below what the noise does. */
 #include <ceres/manifold.h>
 #include <ceres/problem.h>
 #include <ceres/solver.h>
+#include <opencv2/core/utils/logger.hpp>
 
 namespace cv { namespace refract {
 
@@ -98,6 +99,7 @@ class Minimization
 public:
     explicit Minimization(Problem& problem);
     FitOutcome run(const TermCriteria& criteria, double& damping, double leastGain);
+    int iterations() const { return iterations_; }
 
 private:
     bool solve(TrustRegion& region);
@@ -111,6 +113,7 @@ private:
     bool isAtMinimum() const;
     Problem& problem_;
     std::unique_ptr<ReducedCost> cost_;     //!< of what is not held
+    int iterations_ = 0;
     std::vector<double> retreat_;           //!< per block: the part of its distance by which a window was moved from a target; 0: not
 };
 
@@ -334,9 +337,10 @@ FitOutcome Minimization::run(const TermCriteria& criteria, double& damping, doub
             break;
         damping = 1/regions[0].radius;
         const bool isHeldAnew = region.outcome != ceres::FAILURE && isOnBound() && holdAtBounds();
+        iterations_ += region.iterations;
+        left -= region.iterations;
         if (region.outcome == ceres::CONVERGENCE && !isHeldAnew && (region.leastGain > 0 || isAtMinimum()))
             return FitOutcome();
-        left -= region.iterations;
         idle = region.iterations > 1 ? 0 : idle + 1;
         isAgain = problem_.hasScene() && turn == 0 && !isAgain && region.outcome == ceres::CONVERGENCE && !isHeldAnew;
         if (region.outcome == ceres::CONVERGENCE)
@@ -363,7 +367,14 @@ FitOutcome Minimization::run(const TermCriteria& criteria, double& damping, doub
 FitOutcome minimize(Problem& problem, const TermCriteria& criteria, double& damping, double leastGain)
 {
     const FitOutcome start = problem.findPointWithoutImage();
-    return start.converged() ? Minimization(problem).run(criteria, damping, leastGain) : start;
+    if (!start.converged())
+        return start;
+    const int64 begin = getTickCount();
+    Minimization minimization(problem);
+    const FitOutcome outcome = minimization.run(criteria, damping, leastGain);
+    CV_LOG_INFO(NULL, "refract: " << minimization.iterations() << " iterations of " << problem.equationCount() << " equations in "
+                << (double)(getTickCount() - begin)/getTickFrequency() << " s");
+    return outcome;
 }
 
 FitOutcome minimize(Problem& problem, const TermCriteria& criteria)
