@@ -60,7 +60,7 @@ struct Options
 {
     bool quick, growth, bundles;
     std::string only, isa;
-    int points, rounds, surveys, surveysFrom, strips, arrays;
+    int points, rounds, surveys, surveysFrom, strips, views, arrays;
 };
 
 const char KEYS[] =
@@ -70,7 +70,8 @@ const char KEYS[] =
     "{ bundles |        | large bundle adjustments, processor time, instead of the table }"
     "{ surveys | 0      | strips of 20, 100, 300, 1000, ... views, up to so many, instead of the table }"
     "{ surveys-from | 0 | views of the shortest of these }"
-    "{ strips | 0       | errors over stated of so many strips of 20 views, instead of the table }"
+    "{ strips | 0       | errors over stated of so many strips, instead of the table }"
+    "{ views   | 20     | of each of these strips }"
     "{ arrays  | 0      | rings of 3, 6, 12, ... cameras above water, up to so many, instead of the table }"
     "{ only    |        | rows whose key begins with this }"
     "{ isa     | avx512 | the highest instruction set to use: baseline, avx2, avx512 }"
@@ -96,9 +97,10 @@ Options optionsOf(int argc, char** argv)
     }
     const Options o = { parser.has("quick"), parser.has("growth"), parser.has("bundles"), parser.get<std::string>("only"),
                         parser.get<std::string>("isa"), parser.get<int>("points"), parser.get<int>("rounds"),
-                        parser.get<int>("surveys"), parser.get<int>("surveys-from"), parser.get<int>("strips"), parser.get<int>("arrays") };
-    if (!parser.check() || o.points < 1 || o.rounds < 1 || (o.isa != "baseline" && o.isa != "avx2" && o.isa != "avx512"))
-        throw std::runtime_error("--points and --rounds are numbers from 1 on, --isa is baseline, avx2 or avx512");
+                        parser.get<int>("surveys"), parser.get<int>("surveys-from"), parser.get<int>("strips"), parser.get<int>("views"),
+                        parser.get<int>("arrays") };
+    if (!parser.check() || o.points < 1 || o.rounds < 1 || o.views < 7 || (o.isa != "baseline" && o.isa != "avx2" && o.isa != "avx512"))
+        throw std::runtime_error("--points and --rounds are numbers from 1 on, --views from 7, --isa is baseline, avx2 or avx512");
     return o;
 }
 
@@ -114,7 +116,7 @@ try
     if (o.bundles || o.surveys > 0 || o.strips > 0 || o.arrays > 0)
     {
         o.bundles ? printBundles() : o.arrays > 0 ? printArrays(o.arrays)
-        : o.strips > 0 ? printManySurveys(o.strips) : printSurveys(o.surveysFrom, o.surveys);
+        : o.strips > 0 ? printManySurveys(o.views, o.strips) : printSurveys(o.surveysFrom, o.surveys);
         return 0;
     }
     cv::setNumThreads(2);       // its workers start here, where they may run anywhere

@@ -320,12 +320,12 @@ void runMany(int views, int strips, bool hasWindow)
 
 } // namespace
 
-void printManySurveys(int strips)
+void printManySurveys(int views, int strips)
 {
     std::printf("strips of other seeds; error/sigma, RMS\n%-17s%7s%8s%9s%8s%8s%8s\n", "", "strips", "views", "CPU, s", "poses", "points",
                 "camera");
     for (const bool hasWindow : { true, false })
-        runMany(20, strips, hasWindow);
+        runMany(views, strips, hasWindow);
 }
 
 void printSurveys(int least, int most)

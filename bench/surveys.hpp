@@ -11,8 +11,8 @@ with the views, errors of poses and points against the truth in their stated sta
 @param least views of the shortest strip, @param most of the longest */
 void printSurveys(int least, int most);
 
-/** Errors against the truth over stated of as many strips of 20 views with other seeds, through the port and without a window. */
-void printManySurveys(int strips);
+/** Errors against the truth over stated of as many strips with other seeds, through the port and without a window. */
+void printManySurveys(int views, int strips);
 
 } // namespace bench
 
