@@ -4,6 +4,7 @@
 // Mistakes in what is given, told from images that do not fit.
 #include "diagnose/fit_quality.hpp"
 #include "diagnose/diagnosis.hpp"
+#include "diagnose/value_mistakes.hpp"
 #include "assess/rig_calibration.hpp"
 #include "calibrate/image_fit.hpp"
 #include "paper_rig.hpp"
@@ -231,4 +232,35 @@ TEST_CASE("Points of files that are mirrored, or in another unit than the window
         for (Point3d& X : view.objectPoints)
             X *= 0.001;
     CHECK_THAT(explained(metres), Catch::Contains("x, y, z 1000 times as large") && Catch::Contains("another unit"));
+}
+
+TEST_CASE("Images that fit in any unit are no reason to name another one", "[diagnosis]")
+{
+    scenes::Random random(981);
+    RigModel rig = paperRig(1);
+    GlassWindow wall = rig.cameras[0]->window();
+    wall.thickness = {1.};
+    wall.distance = 30.;
+    wall.outerIndex = 1.333;
+    rig.cameras[0] = copyWithWindow(rig.cameras[0], wall);
+    std::vector<Point3d> object = board(6, 5, 10.);
+    for (size_t i = 0; i < object.size(); i++)
+        object[i].z = 8.*(int)(i*7 % 4);
+    CalibrationInput input = rightlyGiven(1, random);
+    input.square = 0.;
+    input.options.window = wall;
+    input.data.views.resize(2);
+    for (View& view : input.data.views)
+    {
+        view = observe(rig, object, random.vector(0.4), Vec3d(random.uniform(-9, 9), random.uniform(-9, 9), 600), false, 0.1, random);
+        view.stem = "v";
+        view.direct[0].clear();
+    }
+    REQUIRE(medianErrorOfFit(input.data, input.options) < 0.3);
+    CalibrationInput farther = input;
+    for (View& view : farther.data.views)
+        for (Point3d& X : view.objectPoints)
+            X *= 1000.;
+    REQUIRE(medianErrorOfFit(farther.data, farther.options) < largestSoundError(input.data));       // it would explain them
+    CHECK(wrongUnitOfPoints(input).px == NO_FIT);
 }

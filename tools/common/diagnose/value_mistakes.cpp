@@ -6,6 +6,7 @@
 #include "calibrate/units.hpp"
 #include "calibrate/starting_model.hpp"
 #include "calibrate/window_face.hpp"
+#include "console/median.hpp"
 #include "console/table.hpp"
 #include <numeric>
 
@@ -33,6 +34,21 @@ GlassWindow onePane(const GlassWindow& window)
     if (!window.wedge.empty())
         pane.wedge.assign(1, std::accumulate(window.wedge.begin(), window.wedge.end(), cv::Vec2d()));
     return pane;
+}
+
+/** Where targets are some ten times as far away as the window's outer face: images that hardly show a window fit in any unit.
+@param factor by which all targets were made larger for this fit */
+bool isMoreUsual(const Fit& fit, double factor)
+{
+    const double USUAL = 10.;
+    const GlassWindow window = fit.rig.cameras[0]->window();
+    const double inside = isRound(window) ? window.radius : window.distance;
+    const double depth = std::accumulate(window.thickness.begin(), window.thickness.end(), inside);
+    std::vector<double> ranges;
+    for (const cv::Vec3d& t : fit.tvecs)
+        ranges.push_back(cv::norm(t));
+    const double range = median(ranges)/(USUAL*depth);
+    return std::abs(std::log(range)) < std::abs(std::log(range/factor));
 }
 
 } // namespace
@@ -85,8 +101,9 @@ Explanation wrongUnitOfPoints(const CalibrationInput& input)
                 X *= factor;
         if (other.options.flags & GLASS_FREE_DISTANCE)
             other.options.window.distance *= factor;
-        const double px = medianErrorOfFit(other.data, other.options);
-        if (px < best.px)
+        Fit fit;
+        const double px = medianErrorOfFit(other.data, other.options, &fit);
+        if (px < best.px && isMoreUsual(fit, factor))
             best = {format("x, y, z %g times as large: are they in another unit than --thickness?", factor), px};
     }
     return best;
