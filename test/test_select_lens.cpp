@@ -454,12 +454,14 @@ void calibrateHousing(const TrueLens& lens, int count, Random& random, Stated& r
     const Ptr<RefractiveCamera> bare = lens.start(), camera = lens.start(given);
     try
     {
-        const int chosen = selectLensCoefficients(air.object, { air.pixels }, {}, { bare }, {}, noArray(), noArray());
+        std::vector<Mat> leftOut, Rs, Ts, rvecs, tvecs;
+        const int chosen = selectLensCoefficients(air.object, { air.pixels }, {}, { bare }, {}, noArray(), noArray(), 0, noArray(),
+                                                  leftOut);
         camera->setLensParameters(bare->lensParameters());
-        std::vector<Mat> rvecs, tvecs;
         Mat covariance;
-        calibrateGlass(object, direct, refracted, camera, rvecs, tvecs, noArray(), covariance, noArray(), noArray(),
-                       GLASS_FREE_DISTANCE | GLASS_FREE_INTRINSICS | chosen);
+        calibrateGlassRig(object, { direct }, { refracted }, { camera }, {}, Rs, Ts, rvecs, tvecs, noArray(), covariance, noArray(),
+                          noArray(), noArray(), noArray(), GLASS_FREE_DISTANCE | GLASS_FREE_INTRINSICS | chosen, noArray(),
+                          TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 1000, 1e-12), leftOut);
         compareWithTruth(camera, truth, covariance, result);
     }
     catch (const CalibrationError&)
@@ -469,6 +471,43 @@ void calibrateHousing(const TrueLens& lens, int count, Random& random, Stated& r
 }
 
 } // namespace
+
+TEST_CASE("selectLensCoefficients tells what the images leave open of what it leaves out", "[select_lens]")
+{
+    CAPTURE(seed());
+    Random random(7750);
+    const auto select = [&](const TrueLens& lens, int count, int flags, double sigma, std::vector<Mat>& leftOut)
+    {
+        const Images images = imagesOf(lens.camera(), count, random, sigma);
+        const Ptr<RefractiveCamera> camera = lens.start();
+        return selectLensCoefficients(images.object, { images.pixels }, {}, { camera }, {}, noArray(), noArray(), flags, noArray(),
+                                      leftOut);
+    };
+    const auto isOpen = [](const Mat& prior, int i) { return prior.at<double>(i, i) > 0; };
+    const auto isFinite = [](const Mat& prior, int i) { return std::isfinite(prior.at<double>(i, i)); };
+    const int K1 = 4, P1 = 6, K3 = 8, K4 = 9;
+    std::vector<Mat> leftOut;
+    for (const double sigma : { SIGMA, 0. })
+    {
+        const int chosen = select(LENSES[1], 12, 0, sigma, leftOut);        // k1, k2
+        REQUIRE(leftOut.size() == 1);
+        REQUIRE(leftOut[0].size() == Size(12, 12));
+        CAPTURE(sigma, chosen, leftOut[0]);
+        CHECK(!isFinite(leftOut[0], 0));
+        CHECK(!isFinite(leftOut[0], K1));
+        if (chosen & GLASS_FIX_TANGENT_DIST)
+            CHECK(isOpen(leftOut[0], P1));
+        if (chosen & GLASS_FIX_K3)
+            CHECK(isOpen(leftOut[0], K3));
+        CHECK(!isFinite(leftOut[0], K4));
+    }
+    select(LENSES[0], 12, GLASS_FIX_K1 | GLASS_FIX_TANGENT_DIST, SIGMA, leftOut);      // what the caller fixed is exact
+    CHECK(!isFinite(leftOut[0], K1));
+    CHECK(!isFinite(leftOut[0], P1));
+    select(LENSES[1], 3, 0, SIGMA, leftOut);
+    for (int i = 0; i < 12; i++)
+        CHECK(!isFinite(leftOut[0], i));
+}
 
 TEST_CASE("A wide lens that no polynomial bends is chosen and calibrated", "[select_lens]")
 {

@@ -467,7 +467,7 @@ RigCalibration calibrate(const Options& o, bool quiet)
     if (o.lens == "auto")
         c.lens = chooseLens(c.data, c.options, o.robust);
     if (!c.lens.scores.empty())
-        setLens(c.lens.lens(), c.options);
+        setLens(c.lens, c.options);
     Progress progress("calibrating", 5, quiet);
     calibrateImages(c, o.robust, [&progress] { progress.step(); });
     if (!o.crossValidation)

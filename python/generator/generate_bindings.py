@@ -65,7 +65,7 @@ def call_forms(gen2):
                 arguments.append("{ " + ", ".join(f'{{ "{a.name}", {a.kind}, {int(not a.default)} }}' for a in takes) + " }")
                 forms.append(f"{{ {form.get_wrapper_name()}, {name}_arguments[{number}], {len(takes)} }}")
             most = max(1, *(len(signatures.arguments_of(self.name, variant)) for variant in self.variants), 1)
-            returns_flags = self.name == "selectLensCoefficients"
+            returns_flags = self.name.startswith("selectLensCoefficients")
             return code + ENTRY.format(name=name, python=self.python_name, most=most, arguments=", ".join(arguments),
                                        forms=", ".join(forms), count=len(forms), flags=int(returns_flags))
 

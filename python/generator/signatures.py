@@ -13,7 +13,7 @@ ALSO_READ = [(r"refractiveSolvePnP(Extended|Ransac|RansacExtended)?", r"rvec|tve
 # InputArrays that one number may stand for.
 NUMBER_TOO = "depth[12]?|disparitySigma"
 # Names that C++ has as int and that are members of an enumeration.
-FLAGS = [(r"(c|stereoC)alibrateGlass\w*|selectLensCoefficients|refractiveBundleAdjust\w*", "GlassCalibrationFlags"),
+FLAGS = [(r"(c|stereoC)alibrateGlass\w*|selectLensCoefficients\w*|refractiveBundleAdjust\w*", "GlassCalibrationFlags"),
          (r"triangulateRefractive\w*", "TriangulateFlags"), (r"refractiveStereoRectify", "RectifyFlags")]
 # Outputs without an element: the shape after the first 0, and the type. Others are empty matrices of float64.
 EMPTY = {"imagePoints|dst|distorted|lines": (2, "CV_64F"), "points3D|origins|directions|_3dImage": (3, "CV_64F"),

@@ -119,7 +119,7 @@ def result_of(variant):
 
 
 def returns(name, variant):
-    return "GlassCalibrationFlags" if name == "selectLensCoefficients" else result_of(variant)
+    return "GlassCalibrationFlags" if name.startswith("selectLensCoefficients") else result_of(variant)
 
 
 def functions(name, function, texts, indent=""):
@@ -133,7 +133,7 @@ def functions(name, function, texts, indent=""):
         parts = [f"{argument.name}: {type_of(argument)}" + (f" = {argument.default}" if argument.default else "")
                  for argument in arguments]
         result = returns(name, variant) if len(signatures.results_of(variant)) == 1 else \
-            result_of(variant).replace("tuple[int", "tuple[GlassCalibrationFlags", name == "selectLensCoefficients")
+            result_of(variant).replace("tuple[int", "tuple[GlassCalibrationFlags", name.startswith("selectLensCoefficients"))
         if key in forms:         # the later one says more
             _, result, earlier = forms[key]
             text = earlier + "\n\n" + text if text else earlier

@@ -4,7 +4,9 @@
 #include "calibrate/lens_choice.hpp"
 #include "calibrate/pinhole_camera.hpp"
 #include "console/table.hpp"
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 
 using namespace cv;
 using namespace cv::refract;
@@ -130,7 +132,12 @@ LensChoice chooseCoefficients(const RigData& data, const LensImages& images, boo
             Ts.clear();
         }
         Mat_<double> scores;
-        const int chosen = selectLensCoefficients(images.object, images.direct, images.glass, cameras, windows, Rs, Ts, flags, scores);
+        std::vector<Mat> leftOut;
+        const int chosen = selectLensCoefficients(images.object, images.direct, images.glass, cameras, windows, Rs, Ts, flags, scores,
+                                                  leftOut);
+        choice.leftOut.resize(data.cameraCount);
+        for (size_t k = 0; k < cameras.size(); k++)
+            choice.leftOut[images.cameras[k]] = leftOut[k];
         for (int i = 0; i < scores.rows; i++)
         {
             choice.scores.push_back({fisheye ? "fisheye" : "opencv", (int)scores(i, 0), (int)scores(i, 1), scores(i, 2)});
@@ -198,15 +205,29 @@ LensChoice chooseLens(const RigData& data, const RigOptions& options, bool robus
     choice.byImages = fisheye.byImages;
     choice.scores.insert(choice.scores.end(), fisheye.scores.begin(), fisheye.scores.end());
     if (better)
+    {
         choice.chosen = before + fisheye.chosen;
+        choice.leftOut = fisheye.leftOut;
+    }
     return choice;
 }
 
-void setLens(const LensScore& lens, RigOptions& options)
+void setLens(const LensChoice& choice, RigOptions& options)
 {
     static const int LENGTHS[] = { 0, 4, 4, 4, 4, 5, 8, 8, 8 };     // of OpenCV's coefficients, among which are so many
-    options.lensCoefficients = lens.model == "fisheye" ? FISHEYE_LENS : LENGTHS[lens.coefficients];
-    options.flags |= lens.flags;
+    const int BEFORE = 4;               // fx, fy, cx, cy
+    const bool isFisheye = choice.lens().model == "fisheye";
+    int length = LENGTHS[choice.lens().coefficients];
+    for (const Mat& prior : choice.leftOut)
+        for (int i = BEFORE; i < prior.rows; i++)
+            if (!isFisheye && prior.at<double>(i, i) > 0)
+                length = std::max(length, *std::lower_bound(std::begin(LENGTHS), std::end(LENGTHS), i - BEFORE + 1));
+    options.lensCoefficients = isFisheye ? FISHEYE_LENS : length;
+    options.flags |= choice.lens().flags;
+    options.leftOut = choice.leftOut;
+    for (Mat& prior : options.leftOut)
+        if (!isFisheye && !prior.empty())
+            prior = prior(Rect(0, 0, BEFORE + length, BEFORE + length)).clone();
 }
 
 } // namespace tools

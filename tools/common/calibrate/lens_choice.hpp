@@ -26,6 +26,7 @@ struct LensChoice
     bool byImages = true;       //!< false: by parts of the target
     bool direct = true;         //!< false: images through the window
     bool undetermined = false;  //!< the images do not tell a focal length: no other model makes that better
+    std::vector<cv::Mat> leftOut = {};  //!< of each camera, what they leave open of left out coefficients; empty: its lens is known
 
     const LensScore& lens() const { return scores[chosen]; }
     std::string sentence() const;
@@ -35,8 +36,8 @@ struct LensChoice
 //! @param robust points far from the richest lens's fit do not count
 LensChoice chooseLens(const RigData& data, const RigOptions& options, bool robust);
 
-//! The options for this lens.
-void setLens(const LensScore& lens, RigOptions& options);
+//! The options for the lens that was chosen.
+void setLens(const LensChoice& choice, RigOptions& options);
 
 } // namespace tools
 

@@ -199,10 +199,18 @@ KnownCamera knownOf(const RefractiveCamera& camera, const RigOptions& options, i
     // Without a covariance the lens of a file is exact, unless the caller wants it free.
     const bool lensKnown = options.known[c] && !(options.knownCovariance[c].empty() && (options.flags & GLASS_FREE_INTRINSICS));
     const bool windowKnown = options.std.ofWindow() || options.areMarkersGiven();
-    if (!lensKnown && !windowKnown)
+    const Mat leftOut = lensKnown || options.leftOut.empty() ? Mat() : options.leftOut[c];
+    if (!lensKnown && !windowKnown && leftOut.empty())
         return known;
     known.covariance = Mat::zeros(lens, lens, CV_64F);
-    if (!lensKnown)
+    if (!leftOut.empty())
+    {
+        leftOut.copyTo(known.covariance);
+        for (int i = 0; i < lens; i++)
+            if (leftOut.at<double>(i, i) >= 0.)
+                known.lens.at<double>(i) = 0.;
+    }
+    else if (!lensKnown)
         known.covariance.diag().setTo(NAN);         // nothing is known
     else if (!options.knownCovariance[c].empty())
         options.knownCovariance[c].copyTo(known.covariance);

@@ -17,6 +17,7 @@ struct RigOptions
     cv::refract::GlassWindow window;                        //!< the known values, and the start of the others
     int flags = 0;                                          //!< GlassCalibrationFlags
     int lensCoefficients = 5;                               //!< of the lens that the images determine
+    std::vector<cv::Mat> leftOut = {};                      //!< what they leave open of others, of each camera (LensChoice); may be empty
     std::vector<int> windows = {};                          //!< which window each camera looks through; empty: each has its own
     PerCamera<cv::Ptr<cv::refract::RefractiveCamera>> known;    //!< lens from a file; null: from the images
     PerCamera<cv::Mat> knownCovariance;                     //!< of its lens parameters; empty where the file has none

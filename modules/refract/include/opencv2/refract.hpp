@@ -62,7 +62,8 @@ without a window.
   be known). `lengthScaleStd`, and the standard deviation of a length, may be NaN, too. Of `cameraCovariances` the blocks of
   the lens, of the window (its normal or center and axis, its distance, its media), and of R and T are read, not the
   correlations between these: `rigCovariance` has them all.
-- **Messages**: the library writes none. While it solves, what Ceres' logger (glog) has below FATAL is muted, in all threads.
+- **Messages**: the library writes none, but for the iterations of each fit where OpenCV's log has the level INFO. While it
+  solves, what Ceres' logger (glog) has below FATAL is muted, in all threads.
 
 ### The model
 
@@ -1534,6 +1535,29 @@ CV_EXPORTS_W int selectLensCoefficients(InputArrayOfArrays objectPoints,
         const std::vector<std::vector<Mat> >& imagePointsRefracted,
         const std::vector<Ptr<RefractiveCamera> >& cameras, const std::vector<int>& windowOfCamera,
         InputArrayOfArrays Rs, InputArrayOfArrays Ts, int flags = 0, OutputArray scores = noArray());
+
+/** @overload
+With what the images leave open of the coefficients that are left out: these are 0 as well as the images tell it, not exactly.
+@param objectPoints as above.
+@param imagePointsDirect as above.
+@param imagePointsRefracted as above.
+@param cameras as above.
+@param windowOfCamera as above.
+@param Rs as above.
+@param Ts as above.
+@param flags as above.
+@param scores as above.
+@param lensCovariances per camera, LxL CV_64F, for cameraCovariances of calibrateGlassRig, with the flags of the choice: a prior
+of mean 0 for coefficients that are left out (up to OpenCV's five, or the next one), NaN for all others. All have one standard
+deviation in pixels at the image's corner, the largest within half a unit of log likelihood of the likeliest (evidence,
+@cite MacKay1992). A calibration that is given it states what a simpler lens than the true one would leave out. NaN throughout
+if there are fewer than 4 views: parts of one target tell nothing of the lens beyond it.
+*/
+CV_EXPORTS_AS(selectLensCoefficientsExtended) int selectLensCoefficients(InputArrayOfArrays objectPoints,
+        const std::vector<std::vector<Mat> >& imagePointsDirect,
+        const std::vector<std::vector<Mat> >& imagePointsRefracted,
+        const std::vector<Ptr<RefractiveCamera> >& cameras, const std::vector<int>& windowOfCamera,
+        InputArrayOfArrays Rs, InputArrayOfArrays Ts, int flags, OutputArray scores, OutputArrayOfArrays lensCovariances);
 
 /** @brief Bundle adjustment without a target: estimates cameras, their windows, poses and scene points from matches, with the
 scale of known lengths.

@@ -18,6 +18,8 @@ takes up, nearly, and at other depths not: of rational lenses the richest is cho
 #include "arrays/arrays.hpp"
 #include "calibrate/fit_arguments.hpp"
 #include "calibrate/failure.hpp"
+#include "calibrate/left_out_lens.hpp"
+#include "calibrate/lens_candidate.hpp"
 #include "calibrate/near_task.hpp"
 #include "calibrate/rig_fit.hpp"
 #include "math/robust_scale.hpp"
@@ -27,72 +29,11 @@ namespace cv { namespace refract {
 namespace {
 
 const double MOST_ABOVE_BEST = 1.02;    // held-out RMS of what is chosen by parts of targets
-const double PERFECT = 1e-6;            // px: of exact data all lenses that can are as good, and differ in their rounding
 const int START_POINTS = 150;           // of a target, to find where windows and cameras are
 const int ROUNDS = 3;                   // of leaving outliers out
 const double OUTLIER = 5;               // in standard deviations
 
-const int TILT = GLASS_FIX_TAUX_TAUY, PRISM = TILT | GLASS_FIX_S1_S2_S3_S4, K6 = GLASS_FIX_K6 | PRISM, K5 = GLASS_FIX_K5 | K6,
-          K4 = GLASS_FIX_K4 | K5, K3 = GLASS_FIX_K3 | K4, TANGENT = GLASS_FIX_TANGENT_DIST | K3, K2 = GLASS_FIX_K2 | TANGENT,
-          K1 = GLASS_FIX_K1 | K2;
-//! What stays, from the simplest lens on.
-const int FIXED[] = { K1, K2, TANGENT, K3, K4, K5, K6, PRISM, TILT, 0 };
 const int FIRST = 2;                    // the search for windows and cameras begins with k1 and k2
-
-struct Candidate
-{
-    int flags;                          //!< GLASS_FIX_...
-    int coefficients;                   //!< that are free, of the camera with most
-    bool isRational;
-    bool isFitted;                      //!< if not to the end, too: left out, it would leave the choice to what is far worse
-    bool isConverged;
-    RigStart fitted;
-    std::vector<HeldOutPart> parts;
-    std::vector<std::vector<double> > errors;   //!< of each image's points
-    double squares;                     //!< of all parts
-    FitOutcome determined;              //!< or which parameters are not
-};
-
-int countFreeCoefficients(const Rig& rig, int flags)
-{
-    int most = 0;
-    for (const Camera& camera : rig.cameras)
-    {
-        const std::vector<bool> isFree = freeLens(camera, flags | GLASS_FREE_INTRINSICS);
-        most = std::max(most, (int)std::count(isFree.begin() + std::min<size_t>(4, isFree.size()), isFree.end(), true));
-    }
-    return most;
-}
-
-bool isRational(const Rig& rig, int flags)
-{
-    for (const Camera& camera : rig.cameras)
-    {
-        const std::vector<String> names = camera.lens().parameterNames();
-        const std::vector<bool> isFree = freeLens(camera, flags | GLASS_FREE_INTRINSICS);
-        const auto isFreeOf = [&](const char* name)
-        {
-            const size_t at = std::find(names.begin(), names.end(), name) - names.begin();
-            return at < isFree.size() && isFree[at];
-        };
-        const bool mayBe = std::find(names.begin(), names.end(), "k5") != names.end();     // a fisheye's k4 is the last
-        if (mayBe && (isFreeOf("k4") || isFreeOf("k5") || isFreeOf("k6")))
-            return true;
-    }
-    return false;
-}
-
-std::vector<Candidate> candidatesOf(const Rig& rig, int flags)
-{
-    std::vector<Candidate> candidates;
-    for (int fixed : FIXED)
-    {
-        const int count = countFreeCoefficients(rig, flags | fixed);
-        if (candidates.empty() || count > candidates.back().coefficients)
-            candidates.push_back({ fixed, count, isRational(rig, flags | fixed), false, false, RigStart(), {}, {}, 0, FitOutcome() });
-    }
-    return candidates;
-}
 
 //! Some points of large targets, evenly.
 RigViews sampled(const RigViews& views)
@@ -110,32 +51,6 @@ RigViews sampled(const RigViews& views)
                         (*pixels)[i] = notSeen;
     }
     return some;
-}
-
-double pointsOf(const std::vector<HeldOutPart>& parts)
-{
-    double points = 0;
-    for (const HeldOutPart& part : parts)
-        points += part.points;
-    return points;
-}
-
-//! Of squares(a) - squares(b). The parts are the same in all candidates, so their differences are what tells.
-double standardError(const Candidate& a, const Candidate& b)
-{
-    const double count = (double)a.parts.size(), mean = (a.squares - b.squares)/count;
-    double variance = 0;
-    for (size_t i = 0; i < a.parts.size(); i++)
-        variance += std::pow(a.parts[i].squares - b.parts[i].squares - mean, 2);
-    return std::sqrt(variance*count/std::max(1., count - 1));
-}
-
-double unseen(const Candidate& candidate) { return PERFECT*PERFECT*pointsOf(candidate.parts); }
-
-//! Proven, by a standard error.
-bool isWorse(const Candidate& a, const Candidate& b)
-{
-    return a.squares - b.squares > std::max(standardError(a, b), unseen(a));
 }
 
 class LensSelection
@@ -160,28 +75,54 @@ public:
             return outcome;
         return choice().determined;
     }
-    const std::vector<Candidate>& candidates() const { return candidates_; }
-    const Candidate& choice() const
+    const std::vector<LensCandidate>& candidates() const { return candidates_; }
+    const LensCandidate& choice() const
     {
-        const Candidate* const polynomial = least(false), * const rational = least(true);
+        const LensCandidate* const polynomial = least(false), * const rational = least(true);
         if (!polynomial || (rational && isWorse(*polynomial, *rational)))
             return richest(*rational);
-        return task_.views.count() >= MIN_HELD_OUT_VIEWS ? *polynomial : simplest(*polynomial);
+        return tellsBeyond() ? *polynomial : simplest(*polynomial);
+    }
+
+    //! Of each camera; see selectLensCoefficients.
+    std::vector<Mat> priorsOfLeftOut() const
+    {
+        const LensCandidate& choice = this->choice(), * widest = &choice;
+        for (const LensCandidate& c : candidates_)
+            if (tellsBeyond() && c.coefficients > choice.coefficients && (!c.isRational || widest == &choice))
+                widest = &c;
+        Problem problem(choice.fitted.rig, task_.views, choice.fitted.poses, std::vector<PosePrior>(), std::vector<CameraPrior>(),
+                        flagsOf(*widest));
+        for (size_t i = 0; i < weights_.size(); i++)
+            problem.setRootWeights((int)i, weights_[i]);
+        std::vector<std::vector<bool> > isLeftOut;
+        for (const Camera& camera : given_.cameras)
+        {
+            isLeftOut.push_back(freeLens(camera, flagsOf(*widest)));
+            const std::vector<bool> isChosen = freeLens(camera, flagsOf(choice));
+            for (size_t i = 0; i < isChosen.size(); i++)
+                isLeftOut.back()[i] = isLeftOut.back()[i] && !isChosen[i];
+        }
+        return cv::refract::priorsOfLeftOut(problem, isLeftOut);
     }
 
 private:
+    //! What parts of one target tell of a lens is not held out of where there was no part.
+    bool tellsBeyond() const { return task_.views.count() >= MIN_HELD_OUT_VIEWS; }
+
     //! Nothing if none was fitted.
-    const Candidate* least(bool isRational) const
+    const LensCandidate* least(bool isRational) const
     {
-        const Candidate* least = nullptr;
-        for (const Candidate& c : candidates_)
+        const LensCandidate* least = nullptr;
+        for (const LensCandidate& c : candidates_)
             if (c.isFitted && c.isRational == isRational && (!least || c.squares < least->squares - unseen(c)))
                 least = &c;
         return least;
     }
-    const Candidate& richest(const Candidate& rational) const
+    const LensCandidate& richest(const LensCandidate& rational) const
     {
-        const auto isAsGood = [&](const Candidate& c)
+        const int PRISM = GLASS_FIX_TAUX_TAUY | GLASS_FIX_S1_S2_S3_S4;
+        const auto isAsGood = [&](const LensCandidate& c)
         {
             const bool isOfK6 = c.isRational && (c.flags & PRISM) == PRISM;
             return isOfK6 && c.isFitted && c.isConverged && c.determined.converged() && !isWorse(c, rational);
@@ -189,22 +130,22 @@ private:
         const auto found = std::find_if(candidates_.rbegin(), candidates_.rend(), isAsGood);
         return found != candidates_.rend() && found->coefficients > rational.coefficients ? *found : rational;
     }
-    const Candidate& simplest(const Candidate& polynomial) const
+    const LensCandidate& simplest(const LensCandidate& polynomial) const
     {
         const double most = std::pow(MOST_ABOVE_BEST, 2)*polynomial.squares + unseen(polynomial);
-        const Candidate& enough = *std::find_if(candidates_.begin(), candidates_.end(), [&](const Candidate& c)
+        const LensCandidate& enough = *std::find_if(candidates_.begin(), candidates_.end(), [&](const LensCandidate& c)
                                                 { return c.isFitted && !c.isRational && !isWorse(c, polynomial) && c.squares <= most; });
         // One that is simpler may miss that by a hair and be better.
-        return *std::find_if(candidates_.begin(), candidates_.end(), [&](const Candidate& c)
+        return *std::find_if(candidates_.begin(), candidates_.end(), [&](const LensCandidate& c)
                              { return c.isFitted && !c.isRational && c.squares <= enough.squares; });
     }
 
-    int flagsOf(const Candidate& candidate) const
+    int flagsOf(const LensCandidate& candidate) const
     {
         return task_.flags | candidate.flags | (hasWindow() ? 0 : GLASS_FIX_NORMAL);
     }
 
-    FitOutcome startOf(const Candidate& candidate, RigStart& start)
+    FitOutcome startOf(const LensCandidate& candidate, RigStart& start)
     {
         RigTask task = task_;
         task.flags |= candidate.flags;
@@ -264,7 +205,7 @@ private:
         for (size_t i = first + 1; i < candidates_.size(); i++)
             if (fit(candidates_[i], from).converged())
                 from = candidates_[i].fitted;
-        if (std::any_of(candidates_.begin(), candidates_.end(), [](const Candidate& c) { return c.isFitted; }))
+        if (std::any_of(candidates_.begin(), candidates_.end(), [](const LensCandidate& c) { return c.isFitted; }))
             return FitOutcome();
         return outcome.converged() ? notHeldOut() : outcome;
     }
@@ -278,7 +219,7 @@ private:
         return outcome;
     }
 
-    FitOutcome fit(Candidate& candidate, const RigStart& from)
+    FitOutcome fit(LensCandidate& candidate, const RigStart& from)
     {
         const TermCriteria criteria(TermCriteria::COUNT + TermCriteria::EPS, 200, 1e-9);
         const int flags = flagsOf(candidate);
@@ -320,7 +261,7 @@ private:
     //! Of the richest lens that was fitted. False: there are no more.
     bool leaveOutliersOut()
     {
-        const auto richest = std::find_if(candidates_.rbegin(), candidates_.rend(), [](const Candidate& c) { return c.isFitted; });
+        const auto richest = std::find_if(candidates_.rbegin(), candidates_.rend(), [](const LensCandidate& c) { return c.isFitted; });
         const std::vector<std::vector<double> >& errors = richest->errors;
         std::vector<double> all;
         for (const std::vector<double>& image : errors)
@@ -343,18 +284,18 @@ private:
     const Rig& given_;
     RigTask task_;
     const bool isRobust_;
-    std::vector<Candidate> candidates_;
+    std::vector<LensCandidate> candidates_;
     std::vector<std::vector<double> > weights_;
 };
 
-Mat scoresOf(const std::vector<Candidate>& candidates)
+Mat scoresOf(const std::vector<LensCandidate>& candidates)
 {
-    const auto best = std::min_element(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b)
+    const auto best = std::min_element(candidates.begin(), candidates.end(), [](const LensCandidate& a, const LensCandidate& b)
                                        { return a.isFitted && (!b.isFitted || a.squares < b.squares); });
     Mat_<double> scores((int)candidates.size(), 4, std::numeric_limits<double>::quiet_NaN());
     for (int i = 0; i < scores.rows; i++)
     {
-        const Candidate& c = candidates[i];
+        const LensCandidate& c = candidates[i];
         scores(i, 0) = c.flags;
         scores(i, 1) = c.coefficients;
         if (!c.isFitted)
@@ -372,6 +313,16 @@ int selectLensCoefficients(InputArrayOfArrays objectPoints, const std::vector<st
                            const std::vector<std::vector<Mat> >& imagePointsRefracted,
                            const std::vector<Ptr<RefractiveCamera> >& cameras, const std::vector<int>& windowOfCamera,
                            InputArrayOfArrays Rs, InputArrayOfArrays Ts, int flags, OutputArray scores)
+{
+    return selectLensCoefficients(objectPoints, imagePointsDirect, imagePointsRefracted, cameras, windowOfCamera, Rs, Ts, flags, scores,
+                                  noArray());
+}
+
+int selectLensCoefficients(InputArrayOfArrays objectPoints, const std::vector<std::vector<Mat> >& imagePointsDirect,
+                           const std::vector<std::vector<Mat> >& imagePointsRefracted,
+                           const std::vector<Ptr<RefractiveCamera> >& cameras, const std::vector<int>& windowOfCamera,
+                           InputArrayOfArrays Rs, InputArrayOfArrays Ts, int flags, OutputArray scores,
+                           OutputArrayOfArrays lensCovariances)
 {
     CV_INSTRUMENT_REGION();
 
@@ -405,10 +356,12 @@ int selectLensCoefficients(InputArrayOfArrays objectPoints, const std::vector<st
         outcome.view = seen[outcome.view];
     moved.moveBack(outcome);
     throwUnlessConverged(outcome, FitKind::CALIBRATION);
-    const Candidate& chosen = selection.choice();
+    const LensCandidate& chosen = selection.choice();
     for (int c = 0; c < count; c++)         // the windows stay as they were given
         cameraOf(cameras[c]).setLensParameters(chosen.fitted.rig.cameras[c].lensParameters());
     writeMat(scoresOf(selection.candidates()), scores);
+    if (lensCovariances.needed())
+        writeMatrices(selection.priorsOfLeftOut(), lensCovariances);
     return chosen.flags;
 }
 

@@ -57,6 +57,13 @@ int selectLensCoefficients(InputArrayOfArrays, const std::vector<std::vector<Mat
     throwWithoutCeres("selectLensCoefficients");
 }
 
+int selectLensCoefficients(InputArrayOfArrays, const std::vector<std::vector<Mat> >&, const std::vector<std::vector<Mat> >&,
+                           const std::vector<Ptr<RefractiveCamera> >&, const std::vector<int>&, InputArrayOfArrays,
+                           InputArrayOfArrays, int, OutputArray, OutputArrayOfArrays)
+{
+    throwWithoutCeres("selectLensCoefficients");
+}
+
 double calibrateGlassRig(InputArrayOfArrays, const std::vector<std::vector<Mat> >&, const std::vector<std::vector<Mat> >&,
                          const std::vector<Ptr<RefractiveCamera> >&, const std::vector<int>&, InputOutputArrayOfArrays,
                          InputOutputArrayOfArrays, InputOutputArrayOfArrays, InputOutputArrayOfArrays, OutputArray, OutputArray,
