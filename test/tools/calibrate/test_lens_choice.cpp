@@ -57,7 +57,8 @@ Ptr<RefractiveCamera> bent(const GlassWindow& window = GlassWindow())
 TEST_CASE("A lens that k1 and k2 describe is chosen by its direct images, and said in one line", "[lens_choice]")
 {
     RigOptions options;
-    const LensChoice choice = chooseLens(dataOf(bent(), 15, false, 1), options, true);
+    const RigData data = dataOf(bent(), 15, false, 1);
+    const LensChoice choice = chooseLens(data, options, true);
     REQUIRE(!choice.scores.empty());
     CHECK(choice.lens().model == "opencv");
     CHECK(choice.lens().coefficients == 2);
@@ -66,8 +67,15 @@ TEST_CASE("A lens that k1 and k2 describe is chosen by its direct images, and sa
     setLens(choice, options);
     CHECK(options.lensCoefficients == 5);       // what 15 images leave open of p1, p2 and k3 is in every +- that follows
     REQUIRE(options.leftOut.size() == 1);
+    std::vector<LensSource> sources;
+    const KnownCamera known = startModel(data, options, sources).known[0];
     for (int i : {6, 7, 8})
+    {
         CHECK(options.leftOut[0].at<double>(i, i) > 0.);
+        CHECK(known.covariance.at<double>(i, i) == options.leftOut[0].at<double>(i, i));
+        CHECK(known.lens.at<double>(i) == 0.);
+    }
+    CHECK(std::isnan(known.covariance.at<double>(4, 4)));       // k1 is as free as it was
     CHECK((options.flags & GLASS_FIX_TANGENT_DIST) != 0);
     CHECK((options.flags & (GLASS_FIX_K1 | GLASS_FIX_K2)) == 0);
 }

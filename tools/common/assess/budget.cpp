@@ -63,7 +63,9 @@ std::vector<Source> sourcesOfCamera(const RigCalibration& c, int k)
     for (size_t i = 0; i < std.index.size(); i++)
         if (i == 0 || std.index[i].text("") != std.index[i - 1].text(""))
             indices += (i ? ", " : "") + std.index[i].text("");
-    std::vector<Source> sources = {sourceOf("lens" + whose, "its file", known.covariance, rangeOf(0, own.lensCount), first)};
+    const bool isOfFile = bool(c.options.known[k]);
+    const std::string lens = isOfFile ? "lens" : "lens coefficients left out", of = isOfFile ? "its file" : "the images";
+    std::vector<Source> sources = {sourceOf(lens + whose, of, known.covariance, rangeOf(0, own.lensCount), first)};
     if (known.covariance.rows == own.lensCount || !c.fit.rig.ownsWindow(k))
         return sources;
     const auto add = [&](const std::string& name, const std::string& given, int column, int count) {

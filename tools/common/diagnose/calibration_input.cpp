@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "diagnose/calibration_input.hpp"
-#include <algorithm>
 
 using namespace cv::refract;
 
@@ -13,12 +12,6 @@ bool hasPairs(const RigData& data)
     return data.countPairs() > 0;
 }
 
-bool hasKnownLens(const CalibrationInput& input)
-{
-    const auto& known = input.options.known;
-    return std::any_of(known.begin(), known.end(), [](const auto& camera) { return bool(camera); });
-}
-
 CalibrationInput oneCamera(const CalibrationInput& input, int camera)
 {
     CalibrationInput one = input;
@@ -26,6 +19,8 @@ CalibrationInput oneCamera(const CalibrationInput& input, int camera)
     one.data.imageSize[0] = input.data.imageSize[camera];
     one.options.known[0] = input.options.known[camera];
     one.options.knownCovariance[0] = input.options.knownCovariance[camera];
+    if (!one.options.leftOut.empty())
+        one.options.leftOut = {input.options.leftOut[camera]};
     if (one.options.places.size() > 1)
         one.options.places = {input.options.places[camera]};
     one.options.windows.clear();

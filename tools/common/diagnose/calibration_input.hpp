@@ -20,9 +20,6 @@ struct CalibrationInput
 //! Of any camera.
 bool hasPairs(const RigData& data);
 
-//! Of any camera, from a file.
-bool hasKnownLens(const CalibrationInput& input);
-
 //! The images of one camera, as a rig of its own.
 CalibrationInput oneCamera(const CalibrationInput& input, int camera);
 

@@ -23,11 +23,6 @@ MatrixXd propagated(const MatrixRef& C, const MatrixRef& A)
     return result;
 }
 
-void subtractTransposeTimes(const MatrixRef& A, const MatrixRef& B, Eigen::Ref<MatrixXd> C)
-{
-    C.noalias() -= A.transpose()*B;
-}
-
 void addGram(const MatrixRef& A, double factor, MatrixXd& C)
 {
     C.selfadjointView<Eigen::Lower>().rankUpdate(A.transpose(), factor);

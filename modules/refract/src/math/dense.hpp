@@ -23,8 +23,6 @@ Eigen::VectorXd timesVector(const MatrixRef& A, const VectorRef& x);            
 Eigen::VectorXd transposeTimesVector(const MatrixRef& A, const VectorRef& x, double factor = 1); //!< factor A^T x
 Eigen::VectorXd diagonalOfProduct(const MatrixRef& A, const MatrixRef& B);       //!< diag(A B)
 Eigen::MatrixXd propagated(const MatrixRef& C, const MatrixRef& A);                //!< A C A^T: the covariance of A x, by that of x
-//! C -= A^T B
-void subtractTransposeTimes(const MatrixRef& A, const MatrixRef& B, Eigen::Ref<Eigen::MatrixXd> C);
 //! Adds factor A^T A to the lower half of C.
 void addGram(const MatrixRef& A, double factor, Eigen::MatrixXd& C);
 
