@@ -1550,8 +1550,8 @@ With what the images leave open of the coefficients that are left out: these are
 @param lensCovariances per camera, LxL CV_64F, for cameraCovariances of calibrateGlassRig, with the flags of the choice: a prior
 of mean 0 for coefficients that are left out (up to OpenCV's five, or the next one), NaN for all others. All have one standard
 deviation in pixels at the image's corner, the largest within half a unit of log likelihood of the likeliest (evidence,
-@cite MacKay1992). A calibration that is given it states what a simpler lens than the true one would leave out. NaN throughout
-if there are fewer than 4 views: parts of one target tell nothing of the lens beyond it.
+@cite MacKay1992); of fewer than 4 views the likeliest. A calibration that is given it states what a simpler lens than the true
+one would leave out.
 */
 CV_EXPORTS_AS(selectLensCoefficientsExtended) int selectLensCoefficients(InputArrayOfArrays objectPoints,
         const std::vector<std::vector<Mat> >& imagePointsDirect,

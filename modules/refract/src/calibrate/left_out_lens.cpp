@@ -15,9 +15,8 @@ using Eigen::VectorXd;
 
 /** Of quantities of mean 0 that all have this standard deviation, as their estimates have the covariance C by themselves: these have
 C + w^2. */
-double largestLikelyWidth(const MatrixXd& C, const VectorXd& estimates)
+double largestLikelyWidth(const MatrixXd& C, const VectorXd& estimates, double lessLikely)
 {
-    const double LESS_LIKELY = 1;           // twice half a unit of log likelihood
     const double LEAST = 1e-4, MOST = 1e4, STEP = 1.05;     // px
     const SymmetricEigen spectrum(C);
     const VectorXd along = transposeTimesVector(spectrum.vectors, estimates);
@@ -33,7 +32,7 @@ double largestLikelyWidth(const MatrixXd& C, const VectorXd& estimates)
         widths.push_back(width);
         unlikelihoods.push_back(sum);
     }
-    const double most = *std::min_element(unlikelihoods.begin(), unlikelihoods.end()) + LESS_LIKELY;
+    const double most = *std::min_element(unlikelihoods.begin(), unlikelihoods.end()) + 2*lessLikely;
     size_t i = widths.size() - 1;
     while (unlikelihoods[i] > most)
         i--;
@@ -95,7 +94,7 @@ std::vector<LeftOut> leftOutOf(const Problem& problem, int camera, const std::ve
 
 } // namespace
 
-std::vector<Mat> priorsOfLeftOut(const Problem& problem, const std::vector<std::vector<bool> >& isLeftOut)
+std::vector<Mat> priorsOfLeftOut(const Problem& problem, const std::vector<std::vector<bool> >& isLeftOut, double lessLikely)
 {
     const Information information = informationOf(problem, false);
     const MatrixXd half = pseudoInverseRoot(information);
@@ -122,7 +121,7 @@ std::vector<Mat> priorsOfLeftOut(const Problem& problem, const std::vector<std::
                 for (int c = 0; c < n; c++)
                     C(r, c) = variance*some[r].pixels*some[c].pixels*some[r].half.dot(some[c].half);
             }
-            const double width = n > 0 ? largestLikelyWidth(C, estimates) : 0;
+            const double width = n > 0 ? largestLikelyWidth(C, estimates, lessLikely) : 0;
             for (const LeftOut& parameter : some)
                 prior(parameter.index, parameter.index) = std::pow(width/parameter.pixels, 2);
         }

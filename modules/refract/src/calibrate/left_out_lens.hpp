@@ -10,13 +10,14 @@
 namespace cv { namespace refract {
 
 /** What the data leave open of the coefficients that a choice of lenses left out, as a prior of mean 0: all have one width in pixels at the
-image's corner, which the data tell (empirical Bayes: the evidence of MacKay, Bayesian interpolation, 1992). It is the largest that
-is not half a unit of log likelihood below the likeliest: that one is 0 for what noise explains, and says that coefficients are
-exactly 0, which nobody knows. Those that bend along the radius (k) have one width, the tangential ones (p) another.
+image's corner, which the data tell (empirical Bayes: the evidence of MacKay, Bayesian interpolation, 1992). Those that bend along the
+radius (k) have one width, the tangential ones (p) another.
 @param problem where the choice was fitted; what was left out is free
 @param isLeftOut of each parameter of each camera's lens
+@param lessLikely the width is the largest whose log likelihood is so far below that of the likeliest. The likeliest is 0 for what
+noise explains, and says that coefficients are exactly 0, which nobody knows
 @return of each camera L x L, CV_64F: NaN for what was not left out */
-std::vector<Mat> priorsOfLeftOut(const Problem& problem, const std::vector<std::vector<bool> >& isLeftOut);
+std::vector<Mat> priorsOfLeftOut(const Problem& problem, const std::vector<std::vector<bool> >& isLeftOut, double lessLikely);
 
 }} // namespace
 

@@ -89,7 +89,7 @@ public:
     {
         const LensCandidate& choice = this->choice(), * widest = &choice;
         for (const LensCandidate& c : candidates_)
-            if (tellsBeyond() && c.coefficients > choice.coefficients && (!c.isRational || widest == &choice))
+            if (c.coefficients > choice.coefficients && (!c.isRational || widest == &choice))
                 widest = &c;
         Problem problem(choice.fitted.rig, task_.views, choice.fitted.poses, std::vector<PosePrior>(), std::vector<CameraPrior>(),
                         flagsOf(*widest));
@@ -103,7 +103,8 @@ public:
             for (size_t i = 0; i < isChosen.size(); i++)
                 isLeftOut.back()[i] = isLeftOut.back()[i] && !isChosen[i];
         }
-        return cv::refract::priorsOfLeftOut(problem, isLeftOut);
+        const double LESS_LIKELY = 0.5;         // in what no image shows, a wider prior than the likeliest one bends without limit
+        return cv::refract::priorsOfLeftOut(problem, isLeftOut, tellsBeyond() ? LESS_LIKELY : 0);
     }
 
 private:
