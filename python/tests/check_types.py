@@ -45,6 +45,7 @@ refract.calibrateGlass([points]*3, None, [pixels]*3, K, None, window)[1].normal
 rms, w, rvecs, tvecs = refract.calibrateGlass([points], [pixels], [pixels], K, None, window, flags=refract.GLASS_FREE_INDEX); rvecs[0] + 1
 refract.calibrateGlass([points], [pixels], [pixels], camera, flags=refract.GLASS_ROBUST | refract.GLASS_FIX_K1)[0] < 0.1
 flags, scores = refract.selectLensCoefficients([points], [[pixels]], [], [camera], [], [], []); flags | refract.GLASS_ROBUST
+refract.selectLensCoefficientsExtended([points], [[pixels]], [], [camera], [], [], [], 0)[2][0].shape
 refract.refractiveBundleAdjust([pixels], [camera], [], [], [], None, None, refract.GLASS_FIX_NORMAL)[3].shape
 found, rvec, tvec, e = refract.refractiveSolvePnP(points, pixels, camera, (0, 0, 0), [0, 0, 600], True); rvec.ravel()
 map1, map2 = refract.initRefractiveUndistortRectifyMap(camera, 600, None, None, (64, 48), 5); map1[0, 0]

@@ -401,6 +401,8 @@ def test_flags_and_statuses_are_enumerations(rig, board):
     lens = refract.RefractiveCamera.create(rig.K1, rig.D1)
     chosen, scores = refract.selectLensCoefficients(board.target, [board.direct1], [], [lens], [], [], [])
     assert isinstance(chosen, refract.GlassCalibrationFlags) and scores.shape[1] == 4
+    again, _, covariances = refract.selectLensCoefficientsExtended(board.target, [board.direct1], [], [lens], [], [], [], 0)
+    assert isinstance(again, refract.GlassCalibrationFlags) and covariances[0].shape == (lens.lensParameters().size,)*2
 
 
 def test_flags_of_cv2_are_refused(rig, board):

@@ -4,6 +4,7 @@
 // The lens model that refract_calib chooses: between OpenCV's and cv::fisheye's, from direct images, or through the window.
 #include "calibrate/lens_choice.hpp"
 #include "calibrate/pinhole_camera.hpp"
+#include "calibrate/pinhole_rig.hpp"
 #include "scenes.hpp"
 #include <catch2/catch.hpp>
 
@@ -65,10 +66,13 @@ TEST_CASE("A lens that k1 and k2 describe is chosen by its direct images, and sa
     CHECK_THAT(choice.sentence(), Catch::StartsWith("opencv, 2 coefficients (k1, k2), chosen by held-out images: 0.2")
                && Catch::Contains("px; with 0: ") && Catch::Contains(", 1: ") && Catch::Contains(", 5: "));
     setLens(choice, options);
-    CHECK(options.lensCoefficients == 5);       // what 15 images leave open of p1, p2 and k3 is in every +- that follows
+    CHECK(options.lensCoefficients == 4);
+    CHECK(options.carriedCoefficients(0) == 5);         // what 15 images leave open of p1, p2 and k3 is in every +- that follows
     REQUIRE(options.leftOut.size() == 1);
     std::vector<LensSource> sources;
-    const KnownCamera known = startModel(data, options, sources).known[0];
+    const RigModel start = startModel(data, options, sources);
+    CHECK(pinholeCoefficients(start, 0) == 4);
+    const KnownCamera known = start.known[0];
     for (int i : {6, 7, 8})
     {
         CHECK(options.leftOut[0].at<double>(i, i) > 0.);

@@ -62,7 +62,7 @@ RigModel trainPinhole(const RigData& data, const Fit& fit, const std::vector<int
 {
     try
     {
-        const Calibration pinhole = calibratePinholeRig(data, train, pinholeCoefficients(*fit.rig.cameras[0]));
+        const Calibration pinhole = calibratePinholeRig(data, train, pinholeCoefficients(fit.rig, 0));
         return modelOf(pinhole);
     }
     catch (const std::exception&)

@@ -17,12 +17,11 @@ namespace tools {
 
 namespace {
 
-Ptr<RefractiveCamera> pinholeOrNone(const RigData& data, const RefractiveCamera& lens, int camera,
-                                    const std::vector<int>& views)
+Ptr<RefractiveCamera> pinholeOrNone(const RigData& data, const RigModel& rig, int camera, const std::vector<int>& views)
 {
     try
     {
-        return calibratePinholeThroughGlass(data, camera, views, pinholeCoefficients(lens)).camera;
+        return calibratePinholeThroughGlass(data, camera, views, pinholeCoefficients(rig, camera)).camera;
     }
     catch (const std::exception&)
     {
@@ -67,7 +66,7 @@ Baselines computeBaselines(const RigData& data, const RigModel& start, const std
     Baselines result;
     for (int c = 0; c < data.cameraCount; c++)
     {
-        const Ptr<RefractiveCamera> pinhole = pinholeOrNone(data, *start.cameras[c], c, allViews(data));
+        const Ptr<RefractiveCamera> pinhole = pinholeOrNone(data, start, c, allViews(data));
         const Ptr<RefractiveCamera> bare = copyWithWindow(start.cameras[c], GlassWindow());
         PooledRms ignored, through;
         for (const View& view : data.views)

@@ -49,8 +49,12 @@ void startAtKnown(RigModel& rig)
         const KnownCamera& known = rig.known[c];
         if (known.covariance.empty())
             continue;
-        rig.cameras[c]->setLensParameters(known.lens);
-        if (known.covariance.rows == known.lens.rows)
+        Mat lens = rig.cameras[c]->lensParameters().clone();
+        for (int i = 0; i < lens.rows; i++)
+            if (known.covariance.rows > lens.rows || !std::isnan(known.covariance.at<double>(i, i)))
+                lens.at<double>(i) = known.lens.at<double>(i);
+        rig.cameras[c]->setLensParameters(lens);
+        if (known.covariance.rows == lens.rows)
             continue;
         GlassWindow window = rig.cameras[c]->window();
         const ParameterColumns at = columnsOf(*rig.cameras[c]);

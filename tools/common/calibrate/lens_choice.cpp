@@ -6,7 +6,6 @@
 #include "console/table.hpp"
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 using namespace cv;
 using namespace cv::refract;
@@ -136,7 +135,7 @@ LensChoice chooseCoefficients(const RigData& data, const LensImages& images, boo
         const int chosen = selectLensCoefficients(images.object, images.direct, images.glass, cameras, windows, Rs, Ts, flags, scores,
                                                   leftOut);
         choice.leftOut.resize(data.cameraCount);
-        for (size_t k = 0; k < cameras.size(); k++)
+        for (size_t k = 0; k < cameras.size() && choice.direct; k++)        // through a window they exchange with its place
             choice.leftOut[images.cameras[k]] = leftOut[k];
         for (int i = 0; i < scores.rows; i++)
         {
@@ -217,17 +216,19 @@ void setLens(const LensChoice& choice, RigOptions& options)
     static const int LENGTHS[] = { 0, 4, 4, 4, 4, 5, 8, 8, 8 };     // of OpenCV's coefficients, among which are so many
     const int BEFORE = 4;               // fx, fy, cx, cy
     const bool isFisheye = choice.lens().model == "fisheye";
-    int length = LENGTHS[choice.lens().coefficients];
-    for (const Mat& prior : choice.leftOut)
-        for (int i = BEFORE; i < prior.rows; i++)
-            if (!isFisheye && prior.at<double>(i, i) > 0)
-                length = std::max(length, *std::lower_bound(std::begin(LENGTHS), std::end(LENGTHS), i - BEFORE + 1));
-    options.lensCoefficients = isFisheye ? FISHEYE_LENS : length;
+    options.lensCoefficients = isFisheye ? FISHEYE_LENS : LENGTHS[choice.lens().coefficients];
     options.flags |= choice.lens().flags;
     options.leftOut = choice.leftOut;
+    int longest = std::max(options.lensCoefficients, 0);
+    for (const Mat& prior : choice.leftOut)
+        for (int i = BEFORE; i < prior.rows; i++)
+            if (prior.at<double>(i, i) > 0)
+                longest = std::max(longest, LENGTHS[i - BEFORE + 1]);
     for (Mat& prior : options.leftOut)
-        if (!isFisheye && !prior.empty())
-            prior = prior(Rect(0, 0, BEFORE + length, BEFORE + length)).clone();
+        if (countNonZero(prior == prior) == 0)      // NaN: nothing
+            prior = Mat();
+        else if (!isFisheye)
+            prior = prior(Rect(0, 0, BEFORE + longest, BEFORE + longest)).clone();
 }
 
 } // namespace tools

@@ -79,14 +79,23 @@ double placeBeside(const RigData& data, const std::vector<int>& views, const Cal
 
 } // namespace
 
-int pinholeCoefficients(const refract::RefractiveCamera& camera)
+int pinholeCoefficients(const RigModel& rig, int camera)
 {
     const int RICHEST = 8;      // that a few views determine
-    const String model = camera.lensModel();
+    const String model = rig.cameras[camera]->lensModel();
     if (model == "fisheye")
         return FISHEYE_LENS;
-    const bool isOpenCV = model == "opencv" || model == "LENSMODEL_PINHOLE" || model.find("LENSMODEL_OPENCV") == 0;
-    return isOpenCV ? camera.lensParameters().rows - 4 : RICHEST;
+    if (model != "opencv" && model != "LENSMODEL_PINHOLE" && model.find("LENSMODEL_OPENCV") != 0)
+        return RICHEST;
+    const int BEFORE = 4;       // fx, fy, cx, cy
+    const Mat known = rig.known.empty() ? Mat() : rig.known[camera].covariance, lens = rig.cameras[camera]->lensParameters();
+    int count = lens.rows - BEFORE;
+    const auto isLeftOut = [&](int i) { return known.at<double>(i, i) > 0 || lens.at<double>(i) == 0; };
+    if (known.empty() || !std::isnan(known.at<double>(0, 0)) || count > RICHEST)
+        return count;           // of a file
+    while (count > 0 && isLeftOut(BEFORE + count - 1))
+        count--;
+    return count == 0 ? 0 : count <= 4 ? 4 : count == 5 ? 5 : RICHEST;
 }
 
 CameraCalibration calibratePinholeThroughGlass(const RigData& data, int camera, const std::vector<int>& views,

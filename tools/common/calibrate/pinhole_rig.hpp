@@ -20,8 +20,8 @@ CameraCalibration calibratePinholeThroughGlass(const RigData& data, int camera, 
 cv::stereoCalibrate. */
 Calibration calibratePinholeRig(const RigData& data, const std::vector<int>& views, int coefficients);
 
-//! Number of coefficients of a lens as cv::calibrateCamera would find it, or FISHEYE_LENS.
-int pinholeCoefficients(const cv::refract::RefractiveCamera& camera);
+//! Number of coefficients of a camera's lens as cv::calibrateCamera would find it, or FISHEYE_LENS; none that a choice only left open.
+int pinholeCoefficients(const RigModel& rig, int camera);
 
 } // namespace tools
 

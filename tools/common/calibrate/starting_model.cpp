@@ -48,7 +48,7 @@ Ptr<RefractiveCamera> startLens(const RigData& data, const RigOptions& options, 
     if (!determineLens(views))
         throw Failure(format("camera %d: %d image(s) to calibrate the lens from are too few: give at least 3 (better 10 or "
                              "more, tilted to all sides), or --camera%s", camera + 1, source.views, suffix.c_str()));
-    return calibratePinhole(views, data.imageSize[camera], options.lensCoefficients, options.flags, source.rms);
+    return calibratePinhole(views, data.imageSize[camera], options.carriedCoefficients(camera), options.flags, source.rms);
 }
 
 //! A lens with many coefficients, overfitted, may fold the image over itself; then nothing else can work.
@@ -276,6 +276,13 @@ Mat targetCovarianceOf(const RigData& data, const RigModel& rig, const GivenStd&
     Mat(rotation*cross.t()).copyTo(covariance(Rect(4, 1, 3, 3)));
     Mat(translation*unit + rotation*cross*cross.t()).copyTo(covariance(Rect(4, 4, 3, 3)));
     return covariance;
+}
+
+int RigOptions::carriedCoefficients(int camera) const
+{
+    const int BEFORE = 4;               // fx, fy, cx, cy
+    const bool isOpen = lensCoefficients != FISHEYE_LENS && !leftOut.empty() && !leftOut[camera].empty();
+    return isOpen ? leftOut[camera].rows - BEFORE : lensCoefficients;
 }
 
 GlassWindow RigOptions::windowOf(int camera) const

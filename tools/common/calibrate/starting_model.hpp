@@ -17,7 +17,7 @@ struct RigOptions
     cv::refract::GlassWindow window;                        //!< the known values, and the start of the others
     int flags = 0;                                          //!< GlassCalibrationFlags
     int lensCoefficients = 5;                               //!< of the lens that the images determine
-    std::vector<cv::Mat> leftOut = {};                      //!< what they leave open of others, of each camera (LensChoice); may be empty
+    std::vector<cv::Mat> leftOut = {};                      //!< what they leave open of more, of each camera (LensChoice); may be empty
     std::vector<int> windows = {};                          //!< which window each camera looks through; empty: each has its own
     PerCamera<cv::Ptr<cv::refract::RefractiveCamera>> known;    //!< lens from a file; null: from the images
     PerCamera<cv::Mat> knownCovariance;                     //!< of its lens parameters; empty where the file has none
@@ -29,6 +29,8 @@ struct RigOptions
     std::vector<GivenPlace> places = {};                    //!< that are known: of all cameras, or of each; empty: none
     std::string placeOption = {};                           //!< which said them
 
+    //! Of a camera's lens, with those that are left open.
+    int carriedCoefficients(int camera) const;
     //! The window of a camera, as far as it is known.
     cv::refract::GlassWindow windowOf(int camera) const;
     const GivenPlace& placeOf(int camera) const { return places[std::min((size_t)camera, places.size() - 1)]; }

@@ -1548,10 +1548,11 @@ With what the images leave open of the coefficients that are left out: these are
 @param flags as above.
 @param scores as above.
 @param lensCovariances per camera, LxL CV_64F, for cameraCovariances of calibrateGlassRig, with the flags of the choice: a prior
-of mean 0 for coefficients that are left out (up to OpenCV's five, or the next one), NaN for all others. All have one standard
-deviation in pixels at the image's corner, the largest within half a unit of log likelihood of the likeliest (evidence,
+of mean 0 for coefficients that are left out (up to OpenCV's five, or the next one), NaN for all others; 0 for what neither
+the images nor the corners of an image show. Those along the radius (k) have one standard deviation in pixels at the image's
+corner, the tangential ones (p) another: the largest within half a unit of log likelihood of the likeliest (evidence,
 @cite MacKay1992); of fewer than 4 views the likeliest. A calibration that is given it states what a simpler lens than the true
-one would leave out.
+one would leave out. It was measured for images without the window; through windows lenses exchange with these.
 */
 CV_EXPORTS_AS(selectLensCoefficientsExtended) int selectLensCoefficients(InputArrayOfArrays objectPoints,
         const std::vector<std::vector<Mat> >& imagePointsDirect,

@@ -182,7 +182,7 @@ bool startAsGiven(const Rig& rig, const RigViews& views, const RigTask& task, Ri
 FitOutcome findStart(const Rig& rig, RigTask& task, RigStart& start, std::vector<OtherMinimum>& minima)
 {
     const RigViews views = task.isRobust() ? inlierViews(rig, task.views) : task.views;
-    const int flags = task.searchFlags(rig);
+    const int flags = task.searchFlags();
     const bool isAsGiven = task.isRefit && startAsGiven(rig, views, task, start);
     const bool searchesLens = (flags & GLASS_FREE_INTRINSICS) && !isAsGiven, isIncremental = task.isIncremental(rig) && !isAsGiven;
     FitOutcome outcome;

@@ -29,7 +29,7 @@ struct RigTask
     //! Images through the windows alone have to tell the lenses too, and nothing is known of the cameras.
     bool isSealed() const;
     //! The flags of a search for where the fit begins, which has no priors: a lens that something tells stays as it is.
-    int searchFlags(const Rig& rig) const;
+    int searchFlags() const;
     //! Images through the windows alone have to tell where the cameras are, and windows or lenses: each camera is fitted alone first.
     bool isIncremental(const Rig& rig) const;
 };

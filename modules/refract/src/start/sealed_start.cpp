@@ -97,11 +97,12 @@ bool RigTask::isSealed() const
     return isThroughWindowsOnly() && !tellsMore && (flags & GLASS_FREE_INTRINSICS);
 }
 
-int RigTask::searchFlags(const Rig& rig) const
+int RigTask::searchFlags() const
 {
     bool isLensKnown = !isThroughWindowsOnly();
-    for (size_t c = 0; c < cameraPriors.size(); c++)
-        isLensKnown = isLensKnown || tells(cameraPriors[c].covariance, 0, rig.cameras[c].lensCount());
+    const int FOCAL_LENGTHS_AND_CENTRE = 4;         // of coefficients all may be known to be small, which is no start
+    for (const CameraPrior& prior : cameraPriors)
+        isLensKnown = isLensKnown || tells(prior.covariance, 0, FOCAL_LENGTHS_AND_CENTRE);
     return isLensKnown ? flags & ~GLASS_FREE_INTRINSICS : flags;
 }
 
@@ -111,7 +112,7 @@ bool RigTask::isIncremental(const Rig& rig) const
     for (size_t c = 1; c < cameraPriors.size(); c++)
         arePlacesKnown = arePlacesKnown || tells(cameraPriors[c].covariance, rig.cameras[c].parameterCount(), 6);
     return isThroughWindowsOnly() && !arePlacesKnown && rig.count() > 1
-           && (searchFlags(rig) & (GLASS_FREE_INTRINSICS | GLASS_FREE_DISTANCE));
+           && (searchFlags() & (GLASS_FREE_INTRINSICS | GLASS_FREE_DISTANCE));
 }
 
 std::vector<RigStart> mirrored(const Rig& rig, const Rig& middle, int flags)
