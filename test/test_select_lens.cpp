@@ -531,6 +531,28 @@ TEST_CASE("Three images that choose a lens without tangential distortion leave o
     CHECK(without > 0);
 }
 
+TEST_CASE("A prior on coefficients alone is no lens to start from", "[select_lens]")
+{
+    CAPTURE(seed());
+    for (int trial = 0; trial < 3; trial++)
+    {
+        CAPTURE(trial);
+        Random random(7790 + trial);
+        GlassWindow given = HOUSING;
+        given.normal = Vec3d(0, 0, 1);
+        const Images water = imagesOf(LENSES[1].camera(HOUSING), 14, random);
+        const Matx33d K(2000, 0, 639.5, 0, 2000, 511.5, 0, 0, 1);
+        const Ptr<RefractiveCamera> camera = RefractiveCamera::create(K, std::vector<double>(5, 0.), given);
+        Mat prior(9, 9, CV_64F, Scalar::all(NaN));
+        prior.at<double>(8, 8) = 1e-4;          // k3
+        std::vector<Mat> Rs, Ts, rvecs, tvecs;
+        calibrateGlassRig(water.object, {}, { water.pixels }, { camera }, {}, Rs, Ts, rvecs, tvecs, noArray(), noArray(), noArray(),
+                          noArray(), noArray(), noArray(), GLASS_FREE_INTRINSICS | GLASS_FIX_K3, noArray(),
+                          TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 1000, 1e-12), std::vector<Mat>{ prior });
+        CHECK(camera->cameraMatrix().at<double>(0, 0) == Approx(LENSES[1].f).epsilon(0.03));
+    }
+}
+
 TEST_CASE("A wide lens that no polynomial bends is chosen and calibrated", "[select_lens]")
 {
     CAPTURE(seed());

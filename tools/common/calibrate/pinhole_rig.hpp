@@ -6,6 +6,7 @@
 
 #include "calibrate/calib_file.hpp"
 #include "calibrate/rig_data.hpp"
+#include "calibrate/rig_model.hpp"
 
 namespace tools {
 
