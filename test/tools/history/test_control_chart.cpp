@@ -8,6 +8,7 @@ from simulated images through the same code as in refract_check; so does every c
 #include "console/failure.hpp"
 #include "normal_draw.hpp"
 #include "temporary_folder.hpp"
+#include <nlohmann/json.hpp>
 #include <fstream>
 
 using namespace check_scenes;
@@ -308,32 +309,38 @@ TEST_CASE("An edited or deleted check is told, at each reading", "[history]")
     const TemporaryFolder folder;
     const std::string file = folder / "history.json";
     writeHistory(file, rig.history);
-    const CheckHistory whole = readHistory(file);
-    CHECK(whole.broken.empty());
-    const auto brokenAfter = [&](const std::function<void(CheckHistory&)>& edit) {
-        CheckHistory edited = whole;
-        edit(edited);
-        std::vector<std::string> told;
-        for (int reading = 0; reading < 2; reading++)       // it stays so when it is written again
-        {
-            writeHistory(file, edited);
-            edited = readHistory(file);
-            told = edited.broken;
-        }
-        return told;
-    };
-    CHECK(brokenAfter([](CheckHistory& h) { h.checks[1].score[0] += 1e-3; }).size() == 1);
-    CHECK(brokenAfter([](CheckHistory& h) { h.checks[2].verdict = "unchanged!"; }).size() == 1);
-    CHECK(brokenAfter([](CheckHistory& h) { h.checks.erase(h.checks.begin() + 1); }).size() == 1);
-    CHECK(brokenAfter([](CheckHistory& h) { h.checks.erase(h.checks.begin()); }).size() == 1);
-    // The last one, by hand.
-    writeHistory(file, whole);
+    CHECK(readHistory(file).broken.empty());
     std::ifstream in(file);
-    std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
-    const size_t last = text.find(whole.checks[2].sha256, text.rfind("\"last\""));
-    REQUIRE(last != std::string::npos);
-    std::ofstream(file) << text.replace(last, 64, whole.checks[1].sha256);
-    CHECK(readHistory(file).broken.size() == 1);
+    const nlohmann::json written = nlohmann::json::parse(in);
+    using Edit = std::function<void(nlohmann::json&)>;
+    const auto brokenAfter = [&](const Edit& edit) {
+        nlohmann::json edited = written;
+        edit(edited);
+        std::ofstream(file) << edited.dump();
+        CheckHistory next = readHistory(file);
+        next.checks.push_back(rig.history.checks[2]);
+        writeHistory(file, next);
+        return readHistory(file).broken;                    // it stays so when it is written again, with a new check
+    };
+    CHECK(brokenAfter([](nlohmann::json&) {}).empty());
+    const Edit edits[] = {
+        [](nlohmann::json& file) { file["checks"][1]["score"][0] = 1e-3; },
+        [](nlohmann::json& file) { file["checks"][2]["verdict"] = "unchanged!"; },
+        [](nlohmann::json& file) { file["checks"][0]["values"][0]["value"][0] = 0.; },         // what a reader looks at
+        [](nlohmann::json& file) { file["checks"][2]["remark"] = "added"; },
+        [](nlohmann::json& file) { file["charts"][0]["factor"] = 1e-3; },
+        [](nlohmann::json& file) { std::swap(file["charts"][0]["name"], file["charts"][1]["name"]); },
+        [](nlohmann::json& file) { file["calibration_sha256"] = "0123"; },
+        [](nlohmann::json& file) { file["window_serial"] = "W-2"; },
+        [](nlohmann::json& file) { file["checks"].erase(1); },
+        [](nlohmann::json& file) { file["checks"].erase(0); },
+        [](nlohmann::json& file) { file["checks"].erase(2); },
+        [](nlohmann::json& file) { file["checks"] = nlohmann::json::array(); }};
+    for (const Edit& edit : edits)
+    {
+        CAPTURE(&edit - edits);
+        CHECK(brokenAfter(edit).size() == 1);
+    }
 }
 
 TEST_CASE("A time to come is refused", "[history]")

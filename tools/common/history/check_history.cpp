@@ -7,6 +7,7 @@
 #include "console/json.hpp"
 #include "console/sha256.hpp"
 #include "math/dense.hpp"
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 
@@ -92,8 +93,8 @@ CalibrationImage shownOf(const Json& json)
     return image;
 }
 
-//! All that is kept of a check.
-Json keptOf(const CheckRecord& check)
+//! All that is kept of a check; the values are for readers, and no more than what the rest says.
+Json keptOf(const CheckHistory& history, const CheckRecord& check)
 {
     Json images = Json::array(), shown = Json::array();
     for (const CheckedImage& image : check.images)
@@ -102,18 +103,8 @@ Json keptOf(const CheckRecord& check)
         shown.append(jsonOf(image));
     return {{"time", check.time}, {"verdict", check.verdict}, {"images", images}, {"shown", shown}, {"sigma_px", check.sigma},
             {"dof", check.dof}, {"changes", check.changes}, {"score", std::vector<double>(check.score.begin(), check.score.end())},
-            {"information", jsonOf(check.information)}, {"by_parameters", jsonOf(check.byParameters)}, {"previous", check.previous}};
-}
-
-std::string hashOf(const CheckRecord& check) { return sha256Of(keptOf(check).text(-1)); }
-
-//! For readers also the values, which are no more than what is kept says.
-Json jsonOf(const CheckHistory& history, const CheckRecord& check)
-{
-    Json json = keptOf(check);
-    json.set("values", valuesOf(history, check));
-    json.set("sha256", check.sha256);
-    return json;
+            {"information", jsonOf(check.information)}, {"by_parameters", jsonOf(check.byParameters)},
+            {"values", valuesOf(history, check)}};
 }
 
 //! Empty in the file of an older tool.
@@ -129,20 +120,56 @@ std::string textOrNone(const Json& json, const std::string& name)
     }
 }
 
-//! Where records are not as they were written. @param last SHA-256 of the last one, as the file has it
-std::vector<std::string> brokenLinks(const std::vector<CheckRecord>& checks, const std::string& last)
+//! The same, whatever program wrote it last.
+Json inOneForm(const Json& json)
 {
-    std::vector<std::string> broken;
+    if (json.isNumber())
+        return json.asNumber();
+    Json list = Json::array(), object = Json::object();
+    if (json.isList())
+        for (const Json& item : json.items())
+            list.append(inOneForm(item));
+    std::vector<std::string> names = json.names();
+    std::sort(names.begin(), names.end());
+    for (const std::string& name : names)
+        object.set(name, inOneForm(json.at(name)));
+    return json.isList() ? list : json.isObject() ? object : json;
+}
+
+//! Of a record as the file has it, with what the file says of the rig and of the charts that the record's numbers are of.
+std::string hashOf(const Json& record, const Json& file)
+{
+    Json hashed = Json::object(), charts = Json::array();
+    for (const std::string& name : record.names())
+        if (name != "sha256")
+            hashed.set(name, record.at(name));
+    for (int c : record.at("changes").asWholes())
+        charts.append(file.at("charts").at((size_t)c));
+    hashed.set("charts", charts);
+    for (const char* const name : {"calibration_sha256", "window_serial"})
+        hashed.set(name, file.at(name));
+    return sha256Of(inOneForm(hashed).text(-1));
+}
+
+//! Where records are not as they were written.
+std::vector<std::string> brokenLinks(const Json& file)
+{
+    std::vector<std::string> edited, broken;
     std::string before;
-    for (const CheckRecord& check : checks)
+    for (const Json& record : file.at("checks").items())
     {
-        if (!check.sha256.empty() && check.sha256 != hashOf(check))
-            broken.push_back("the check of " + check.time + " was edited");
-        if (!check.sha256.empty() && check.previous != before)
-            broken.push_back("what was before the check of " + check.time + " was deleted, or put elsewhere");
-        before = check.sha256;
+        const std::string hash = textOrNone(record, "sha256"), time = record.at("time").asText();
+        if (!hash.empty() && hash != hashOf(record, file))
+            edited.push_back(time);
+        if (!hash.empty() && textOrNone(record, "previous") != before)
+            broken.push_back("what was before the check of " + time + " was deleted, or put elsewhere");
+        before = hash;
     }
-    if (last != before)
+    if (!edited.empty())
+        broken.insert(broken.begin(), (edited.size() == 1 ? "the check of " + edited[0] + " was edited"
+            : format("%zu checks were edited, of %s to %s", edited.size(), edited.front().c_str(), edited.back().c_str()))
+            + ", or what the file says of their charts and of the rig");
+    if (textOrNone(file, "last") != before)
         broken.push_back("the last check was deleted");
     return broken;
 }
@@ -154,9 +181,8 @@ CheckRecord checkOf(const Json& json, const std::vector<ChartedChange>& changes)
     check.verdict = json.at("verdict").asText();
     for (const Json& image : json.at("images").items())
         check.images.push_back({image.at("name").asText(), image.at("sha256").asText()});
-    check.previous = textOrNone(json, "previous");
-    check.sha256 = textOrNone(json, "sha256");
-    if (!check.sha256.empty())
+    check.written = json;
+    if (!textOrNone(json, "sha256").empty())
         for (const Json& image : json.at("shown").items())
             check.shown.push_back(shownOf(image));
     check.sigma = json.at("sigma_px").asNumber();
@@ -194,7 +220,8 @@ CheckHistory historyOf(const Json& json)
         if (n > 1 && history.checks[n - 1].time < history.checks[n - 2].time)
             throw Failure("its checks are not in the order of their times");
     }
-    history.broken = brokenLinks(history.checks, textOrNone(json, "last"));
+    history.last = textOrNone(json, "last");
+    history.broken = brokenLinks(json);
     return history;
 }
 
@@ -241,20 +268,23 @@ void writeHistory(const std::string& filename, const CheckHistory& history)
     Json charts = Json::array(), checks = Json::array();
     for (const ChartedChange& change : history.changes)
         charts.append({{"name", change.name}, {"unit", change.unit}, {"axes", change.axes}, {"factor", change.factor}});
-    std::string last;
-    for (CheckRecord check : history.checks)
+    Json file = {{"file", KIND}, {"calibration_sha256", history.calibration}, {"window_serial", history.serial}, {"charts", charts}};
+    std::string last = history.last;
+    for (const CheckRecord& check : history.checks)
     {
-        if (check.sha256.empty())           // a new one; what is there keeps what it says of itself, right or wrong
+        Json record = check.written;        // what is there keeps what it says of itself, right or wrong
+        if (textOrNone(record, "sha256").empty())
         {
-            check.previous = last;
-            check.sha256 = hashOf(check);
+            record = keptOf(history, check);
+            record.set("previous", last);
+            last = hashOf(record, file);
+            record.set("sha256", last);
         }
-        checks.append(jsonOf(history, check));
-        last = check.sha256;
+        checks.append(record);
     }
-    const Json json = {{"file", KIND}, {"calibration_sha256", history.calibration}, {"window_serial", history.serial}, {"charts", charts},
-                       {"checks", checks}, {"last", last}};
-    writeText(filename, json.text(1) + '\n');
+    file.set("checks", checks);
+    file.set("last", last);
+    writeText(filename, file.text(1) + '\n');
 }
 
 CheckRecord recordOf(const ChartedScore& score, const std::vector<std::string>& files, const std::string& time, CheckHistory& history,

@@ -6,13 +6,15 @@
 
 #include "assess/rig_check.hpp"
 #include "calibrate/calibration_images.hpp"
+#include "console/json.hpp"
 #include "console/times.hpp"
 #include <string>
 #include <vector>
 
 /* All checks of one calibration, as refract_check --history keeps them: a JSON file, a record a check, in the order of their times. Each
-has the SHA-256 of itself and of the one before, and the file that of the last one: an edited or deleted record is told, as is one that
-was left out on purpose. Whoever computes them all anew is not found out; that takes a signature. */
+has the SHA-256 of itself, with what the file says of the rig and its charts, and of the one before, and the file that of the last one: an
+edited or deleted record is told, as is one that was left out on purpose. Whoever computes them all anew is not found out; that takes a
+signature. */
 namespace tools {
 
 //! Parameters that are charted together: the two of a window's tilt, the focal length.
@@ -41,7 +43,7 @@ struct CheckRecord
     std::vector<int> changes;           //!< which of CheckHistory::changes its images tell, in their order
     VectorXd score;
     MatrixXd information, byParameters;
-    std::string previous, sha256;       //!< as in the file, of the record before and of this one; empty: new, or of an older tool
+    Json written;                       //!< as the file has it, with SHA-256 of the record before and of this one; null: new
 };
 
 struct CheckHistory
@@ -50,6 +52,7 @@ struct CheckHistory
     std::string serial;                 //!< of the window; may be empty
     std::vector<ChartedChange> changes;
     std::vector<CheckRecord> checks;
+    std::string last;                   //!< SHA-256 of the last check, as the file says; the next one is chained to it
     std::vector<std::string> broken;    //!< where the chain is, a sentence each
 };
 
