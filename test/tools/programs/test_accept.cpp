@@ -394,6 +394,7 @@ TEST_CASE("refract_accept says what is wrong in one sentence", "[tools][accept_t
         {"a,view00,0,view00,5,195,0.1\n", " --max-error=1 --country=Germany", "two capital letters"},
         {"a,view00,0,view00,5,195,0.1\n", " --max-error=1 --date=2999-01-01", "in the future"},
         {"a,view00,0,view00,5,195,0.1\n", " --max-error=1 --date=1999-01-01", "was calibrated later"},
+        {"a,view00,0,view00,5,195,0.1\n", " --max-error=1 --issued=2001-01-01", "of a test that was"},
         {"a,view00,0,view00,5,195,0.1\n", " --max-error=1 --serial=W-18", "is of 'W-17'"},
         {"a,view00,0,view00,5,195,0.1\n", " --max-error=1 --temperature=21", "belong together"},
         {"a,view00,0,view00,5,195,0.1\n", " --max-error=1 --volume=1,0,1,2,3,4", "each pair growing"},
@@ -426,6 +427,11 @@ TEST_CASE("refract_accept says what is wrong in one sentence", "[tools][accept_t
     std::string moved = points;
     moved.insert(moved.find("view00,0,") + 9, "1");         // far to the right
     CHECK(mentions(withPoints(moved).err, "is not of this calibration"));
+
+    // A clock that was wrong when the file was written.
+    writeFile(out / "points.csv", points);
+    std::filesystem::last_write_time(out / "points.csv", std::filesystem::file_time_type::clock::now() + std::chrono::hours(24*400));
+    CHECK(mentions(runTool(bench.accept(out / "points.csv", out / "lengths.csv", "1")).err, "newest file"));
 
     const ToolResult single = runTool("refract_accept " + bench.folder / "camera1.yml" + " --no-window --points=" + out / "points.csv"
                                       + " --lengths=" + out / "lengths.csv" + " --max-error=1");

@@ -37,8 +37,6 @@ void CertificateLabel::check() const
             requireDate(day.second, day.first);
             requirePast(day.second, day.first);
         }
-    if (!date.empty() && !issued.empty() && issued < date)
-        throw Failure("--issued=" + issued + " is before the test, --date=" + date);
     const bool isCountry = country.size() == 2 && std::all_of(country.begin(), country.end(), [](char c) { return c >= 'A' && c <= 'Z'; });
     if (!country.empty() && !isCountry)
         throw Failure("--country=" + country + ": give two capital letters, as in --country=DE");
@@ -60,12 +58,17 @@ CertificateLabel CertificateLabel::completed(const Calibration& calibration, con
         label.serial = own;
     if (date.empty())
         label.date = timeOfFiles(inputs).substr(0, DAY);
-    if (issued.empty())
-        label.issued = timeOfNow().substr(0, DAY);
+    const std::string ofTest = date.empty() ? "the test is of " + label.date + " (SOURCE_DATE_EPOCH, or the newest file)"
+                                            : "--date=" + date;
+    requirePast(label.date, date.empty() ? "date of the newest file" : "--date");
+    if (issued.empty())         // today; where the sun rises first, the test may be of tomorrow
+        label.issued = std::max(timeOfNow().substr(0, DAY), label.date);
+    if (label.issued < label.date)
+        throw Failure("--issued=" + issued + ": " + ofTest + "; a certificate is of a test that was");
     const std::string calibrated = calibration.time.substr(0, DAY);
     if (calibrated.size() == DAY && label.date < calibrated)
-        throw Failure((date.empty() ? "the test is of " + label.date + " (SOURCE_DATE_EPOCH, or the newest file)" : "--date=" + date)
-                      + ": '" + filename + "' was calibrated later, on " + calibrated + "; a test is of a calibration that there is");
+        throw Failure(ofTest + ": '" + filename + "' was calibrated later, on " + calibrated
+                      + "; a test is of a calibration that there is");
     return label;
 }
 
