@@ -38,6 +38,13 @@ inline tools::RigCalibration calibratedPairs(const tools::GivenStd& std, unsigne
 {
     scenes::Random random(seed);
     tools::RigModel rig = paperRig(2);
+    for (const cv::Ptr<cv::refract::RefractiveCamera>& camera : rig.cameras)
+    {
+        cv::refract::GlassWindow window = camera->window();
+        if (std.wedge > 0.)
+            window.wedge = {cv::Vec2d()};
+        camera->setWindow(window);
+    }
     tools::RigData data = dataOf(rig);
     for (int i = 0; i < 8; i++)
     {

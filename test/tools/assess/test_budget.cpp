@@ -4,6 +4,7 @@
 // The uncertainty budget: its rows against what each source does by itself.
 #include "assess/budget.hpp"
 #include "calibrate/parameter_columns.hpp"
+#include "calibrate/units.hpp"
 #include "math/dense.hpp"
 #include "measure/eigen_matrix.hpp"
 #include "fitted_rig.hpp"
@@ -28,6 +29,29 @@ const BudgetRow& rowOf(const std::vector<BudgetRow>& rows, const std::string& so
 }
 
 } // namespace
+
+TEST_CASE("What a source is known to is a number of the unit that stands beside it", "[budget]")
+{
+    GivenStd std;
+    std.thickness = 0.05;
+    std.index = {Std(0.0007)};
+    std.wedge = 2.*ARC_MINUTE;
+    std.scale = 1e-4;
+    RigCalibration c = calibrated(std);
+    int told = 0;
+    for (const double square : {SQUARE, 0.})            // a board, and targets of points
+    {
+        c.square = square;
+        for (const UncertaintySource& source : uncertaintySources(c))
+            if (source.std > 0)
+            {
+                CAPTURE(source.name, source.given, source.std);
+                CHECK(std::stod(source.given) == Approx(source.std).epsilon(0.06));     // two digits
+                told++;
+            }
+    }
+    CHECK(told == 2*(2*3 + 1));
+}
 
 TEST_CASE("The budget of a point adds up, and each source is worth what it does by itself", "[budget]")
 {

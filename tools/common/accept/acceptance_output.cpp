@@ -114,8 +114,8 @@ void printTables(std::ostream& out, const Acceptance& a, const std::vector<GumTa
         Table rows({"source", "standard uncertainty", "sensitivity" + (a.unit.empty() ? "" : unit + " per its unit"), "contribution" + unit,
                     "share, %", "degrees of freedom"});
         for (const GumRow& row : budget.rows)
-            rows.add({row.source, std::isnan(row.std) ? "" : row.given.empty() ? format("%.3g ", row.std) + a.unit : row.given,
-                      orBlank(row.sensitivity), ofU(row.contribution), format("%.1f", 100.*row.share), textOfDof(row.dof)});
+            rows.add({row.source, row.knownTo(a.unit), orBlank(row.sensitivity), ofU(row.contribution),
+                      format("%.1f", 100.*row.share), textOfDof(row.dof)});
         rows.add({"u; effective degrees of freedom", "", "", ofU(budget.u), "100.0", textOfDof(budget.dof)});
         rows.add({format("U (k = %.2f, 95.45 %%)", budget.k), "", "", rounded(budget.U, decimalsOf(budget.U)), "", ""});
         rows.print(out);

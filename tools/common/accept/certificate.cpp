@@ -93,7 +93,7 @@ PageList budgetOf(const GumTable& table, const std::string& unit)
     {
         PageValues entry;
         entry.set("source", row.source);
-        entry.set("std", std::isnan(row.std) ? "" : row.given.empty() ? format("%.3g ", row.std) + unit : row.given);
+        entry.set("std", row.knownTo(unit));
         entry.set("sensitivity", std::isnan(row.sensitivity) ? "" : format("%.3g", row.sensitivity));
         entry.set("contribution", rounded(row.contribution, decimalsOf(table.u) + 1));
         entry.set("share", format("%.1f", 100.*row.share));

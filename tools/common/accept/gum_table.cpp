@@ -77,6 +77,11 @@ void finish(GumTable& table, double total, double dof)
 
 } // namespace
 
+std::string GumRow::knownTo(const std::string& unit) const
+{
+    return !given.empty() || std::isnan(std) ? given : format("%.3g ", std) + unit;
+}
+
 LinearQuantity coordinateOf(const TestPoints& points, size_t point, int axis)
 {
     Vec3d direction;

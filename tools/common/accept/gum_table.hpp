@@ -18,6 +18,9 @@ struct GumRow
     double contribution, share;         //!< share of u(y)^2
     double dof;                         //!< infinite: not from these images
     bool isOfTest = false;              //!< of the test's own: what it measures with, not what it tests
+
+    //! u(x_i) as text; empty: it is of several values, and nobody gave them. @param unit of lengths
+    std::string knownTo(const std::string& unit) const;
 };
 
 struct GumTable

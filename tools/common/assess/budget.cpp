@@ -35,9 +35,10 @@ std::vector<int> rangeOf(int first, int count)
 }
 
 //! Those of a prior's rows that have a variance, shifted to where they are in the whole.
-Source sourceOf(const std::string& name, const std::string& given, const Mat& prior, const std::vector<int>& rows, int first)
+Source sourceOf(const std::string& name, const std::string& given, const Mat& prior, const std::vector<int>& rows, int first,
+                double unit = 1.)
 {
-    Source source{name, given, {}, Mat(), 1.};
+    Source source{name, given, {}, Mat(), unit};
     std::vector<int> own;
     for (int row : rows)
         if (prior.at<double>(row, row) > 0)
@@ -68,26 +69,31 @@ std::vector<Source> sourcesOfCamera(const RigCalibration& c, int k)
     std::vector<Source> sources = {sourceOf(lens + whose, of, known.covariance, rangeOf(0, own.lensCount), first)};
     if (known.covariance.rows == own.lensCount || !c.fit.rig.ownsWindow(k))
         return sources;
-    const auto add = [&](const std::string& name, const std::string& given, int column, int count) {
-        sources.push_back(sourceOf(name + whose, given, known.covariance, rangeOf(column, count), first));
+    const auto add = [&](const std::string& name, const std::string& given, int column, int count, double unit = 1.) {
+        sources.push_back(sourceOf(name + whose, given, known.covariance, rangeOf(column, count), first, unit));
     };
+    const double minutes = 1./ARC_MINUTE, degrees = 180./CV_PI;
     add("thickness", std.thickness.text(length), own.thickness, own.layers);
     add("index", indices, own.index, own.layers);
-    add("wedge", std.wedge.text("'", 1./ARC_MINUTE), own.wedge, own.curvature - own.wedge);
-    const auto addIf = [&](const std::string& name, const std::string& given, int column, int count) {
+    add("wedge", std.wedge.text("'", minutes), own.wedge, own.curvature - own.wedge, minutes);
+    const auto addIf = [&](const std::string& name, const std::string& given, int column, int count, double unit = 1.) {
         if (own.has(column))
-            add(name, given, column, count);
+            add(name, given, column, count, unit);
     };
     if (c.options.areMarkersGiven())    // they tell both together
         add("normal and distance", c.options.placeOption, own.normal, 4);
     else
     {
-        addIf("normal", std.normal.text(" degrees", 180./CV_PI), own.normal, 3);
-        addIf("distance", std.isDistanceOpen ? "not given" : std.distance.text(length), own.distance, 1);
+        addIf("normal", std.normal.text(" degrees", degrees), own.normal, 3, degrees);
+        if (own.has(own.distance))
+        {
+            const double open = std::sqrt(known.covariance.at<double>(own.distance, own.distance));
+            add("distance", (std.isDistanceOpen ? Std(open, "not given") : std.distance).text(length), own.distance, 1);
+        }
     }
     addIf("radius", std.radius.text(length), own.radius, 1);
     addIf("centre", std.center.text(length), own.center, 3);
-    addIf("bow", std.bow.text(" mm per m"), own.curvature, 1);
+    addIf("bow", std.bow.text(" mm per m"), own.curvature, 1, bowOf(1., c.unit));
     add(INDEX_OF_MEDIUM, std.outerIndex.text(""), own.outerIndex, 1);
     return sources;
 }
@@ -104,9 +110,8 @@ std::vector<Source> sourcesOf(const RigCalibration& c)
         const int first = columnCount(c.fit.rig);
         sources.push_back(sourceOf(c.square > 0. ? "square of the board" : "scale of the targets",
                                    c.square > 0. ? c.options.std.scale.text(" " + c.unit, c.square)
-                                                 : c.options.std.scale.text(" %", 100.), targets, {0}, first));
-        if (c.square > 0.)
-            sources.back().unit = c.square;
+                                                 : c.options.std.scale.text(" %", 100.), targets, {0}, first,
+                                   c.square > 0. ? c.square : 100.));
         sources.push_back(sourceOf("boards moved between direct and glass", c.options.std.placement.text(" " + c.unit), targets,
                                    rangeOf(1, 6), first));
     }
