@@ -95,4 +95,9 @@ TEST_CASE("A target found in few of the images is told", "[data_checks]")
     RigImages sets = images("v", "v", 0.4, random);
     sets.direct[0].withoutTarget = {"a.png", "b.png", "c.png", "d.png", "e.png", "f.png", "g.png", "h.png"};
     CHECK_THAT(allNotices(sets, false), Catch::Contains("6 of 14 direct images") && Catch::Contains("--size"));
+    // Whose board another camera saw at that moment, needs no other --size.
+    for (const std::string name : {"a", "b", "c", "d", "e"})
+        sets.direct[1].images.push_back({name, "2/" + name + ".png", {}, {}});
+    CHECK_THAT(allNotices(sets, false), Catch::Contains("6 of 14 direct images; other cameras saw it at 5 of the moments without")
+                                        && !Catch::Contains("--size"));
 }

@@ -164,6 +164,18 @@ void noticeParallel(const RigData& data, std::vector<std::string>& notices)
         }
 }
 
+//! Of the images of a camera that do not show the target, those of whose names other cameras have one that does.
+size_t seenByOthers(const RigImages& sets, int camera, bool through)
+{
+    std::set<std::string> seenElsewhere;
+    for (int c = 0; c < MAX_CAMERAS; c++)
+        for (const DetectedImage& image : c == camera ? std::vector<DetectedImage>() : (through ? sets.glass : sets.direct)[c].images)
+            seenElsewhere.insert(stemOf(image.path));
+    const std::vector<std::string>& without = (through ? sets.glass : sets.direct)[camera].withoutTarget;
+    return (size_t)std::count_if(without.begin(), without.end(), [&](const std::string& path) {
+        return seenElsewhere.count(stemOf(path)); });
+}
+
 void noticeNotFound(const RigImages& sets, std::vector<std::string>& notices)
 {
     for (int c = 0; c < MAX_CAMERAS; c++)
@@ -171,11 +183,15 @@ void noticeNotFound(const RigImages& sets, std::vector<std::string>& notices)
         {
             const DetectedImages& set = (through ? sets.glass : sets.direct)[c];
             const size_t found = set.images.size(), count = found + set.withoutTarget.size();
-            if (2*found < count)
-                notices.push_back(format("the target was found in only %zu of %zu %s%s: check --pattern and --size (count the "
-                                         "inner corners, dots or tags), light and focus", found, count,
-                                         through ? "images through the window" : "direct images",
-                                         c ? format(" of camera %d", c + 1).c_str() : ""));
+            if (2*found >= count)
+                continue;
+            const std::string few = format("the target was found in only %zu of %zu ", found, count)
+                + (through ? "images through the window" : "direct images") + (c ? format(" of camera %d", c + 1) : "");
+            const size_t elsewhere = seenByOthers(sets, c, through);
+            notices.push_back(few + (2*elsewhere < set.withoutTarget.size()
+                ? ": check --pattern and --size (count the inner corners, dots or tags), light and focus"
+                : format("; other cameras saw it at %zu of the moments without: where all of it is in view, check light and focus",
+                         elsewhere)));
         }
 }
 
