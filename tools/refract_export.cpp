@@ -197,7 +197,9 @@ std::vector<std::string> write(const Options& options, const std::string& settin
 
 void printTable(const CentralRig& rig)
 {
-    Table table({"central camera", "rms, px", "max, px", "rms, length", "max, length", "moved by"});
+    const std::string length = rig.unit.empty() ? "length" : rig.unit;
+    Table table({"central camera", "rms, px", "max, px", "rms, " + length, "max, " + length,
+                 "moved by" + (rig.unit.empty() ? "" : ", " + rig.unit)});
     for (const ExportedCamera& camera : rig.cameras)
     {
         const CentralError& e = camera.central.error;

@@ -51,7 +51,8 @@ TEST_CASE("A printed board has its true size, and all of its points are found", 
     const struct { TargetOptions target; double millimetres; std::string paper; } cases[] = {
         {board("chessboard", "6x5", 25), 1, "A4"}, {board("chessboard", "9x6", 0.015), 1000, "A4"}, {markers, 1, "A4"},
         {board("charuco", "6x5", 1), 25.4, "A4"}, {board("circles", "7x6", 20), 1, "A4"}, {board("acircles", "4x11", 20), 1, "A4"},
-        {board("chessboard", "6x5", 39), 1, "A3"}};
+        {board("chessboard", "6x5", 39), 1, "A3"}, {board("chessboard", "11x8", 20), 1, "A4"}, {board("circles", "9x6", 23), 1, "A4"},
+        {board("charuco", "7x5", 30), 1, "A4"}};            // turned by a quarter
     for (const auto& c : cases)
     {
         const TemporaryFolder folder;

@@ -149,8 +149,7 @@ BoardPage::BoardPage(const Target& target, double millimetres, const std::string
     Point2d last;
     for (const cv::Point3d& p : target.objectPoints())
         last = Point2d(std::max(last.x, p.x*millimetres), std::max(last.y, p.y*millimetres));
-    board_ = Rect2d(0, 0, last.x + 2*border(), last.y + 2*border());
-    choosePaper(paper, Size2d(std::max(board_.width, RULER + 2) + 2*MARGIN, board_.height + FOOTER + 2*MARGIN));
+    choosePaper(paper, Size2d(last.x + 2*border(), last.y + 2*border()));
     board_.x = 0.5*(paper_.width - board_.width);
     board_.y = MARGIN + 0.5*(paper_.height - 2*MARGIN - FOOTER - board_.height);
 }
@@ -160,63 +159,92 @@ double BoardPage::border() const
     return !hasDots() ? target_.border()*square() : target_.pattern() == Target::ACIRCLES ? 2*DOT*square() : DOT*square();
 }
 
-void BoardPage::choosePaper(const std::string& paper, Size2d needed)
+Size2d BoardPage::neededPaper() const
 {
-    const auto fits = [&](double width, double height) { return needed.width <= width && needed.height <= height; };
-    const std::string needs = cv::format("%.0fx%.0f", std::ceil(needed.width), std::ceil(needed.height));
+    return Size2d(std::max(board_.width, RULER + 2) + 2*MARGIN, board_.height + FOOTER + 2*MARGIN);
+}
+
+//! As it is, or turned by a quarter, which the text below it is not.
+bool BoardPage::place(Size2d board, Size2d paper)
+{
+    for (const bool turned : {false, true})
+    {
+        isTurned_ = turned;
+        board_ = turned ? Rect2d(0, 0, board.height, board.width) : Rect2d(0, 0, board.width, board.height);
+        const Size2d needed = neededPaper();
+        if (needed.width <= paper.width && needed.height <= paper.height)
+        {
+            paper_ = paper;
+            return true;
+        }
+    }
+    return false;
+}
+
+void BoardPage::choosePaper(const std::string& paper, Size2d board)
+{
     for (const Paper& p : PAPERS)
     {
         if (paper.empty() ? p.height < 297 : paper != p.name)
             continue;
-        const bool upright = fits(p.width, p.height), across = fits(p.height, p.width);
-        if (!upright && !across)
-            continue;
         // As the board lies, so that the paper's edges are where its own are.
-        paper_ = upright && !(across && board_.width > board_.height) ? Size2d(p.width, p.height) : Size2d(p.height, p.width);
+        const Size2d upright(p.width, p.height), across(p.height, p.width);
+        const bool isWide = board.width > board.height;
         paperName_ = p.name;
-        return;
+        if (place(board, isWide ? across : upright) || place(board, isWide ? upright : across))
+            return;
     }
-    const bool isNamed = std::any_of(std::begin(PAPERS), std::end(PAPERS), [&](const Paper& p) { return paper == p.name; });
+    isTurned_ = false;
+    board_ = Rect2d(0, 0, board.width, board.height);
+    const Size2d needed = neededPaper();
+    paper_ = Size2d(std::ceil(needed.width), std::ceil(needed.height));
     if (!paper.empty())
     {
-        const cv::Size size = isNamed ? cv::Size() : parseSize(paper, "--paper");
-        if (!fits(size.width, size.height))
-            throw Failure("--paper=" + paper + ": the board with its ruler needs " + needs + " mm; take larger paper, or fewer or "
-                          "smaller squares");
-        paper_ = size;
+        const bool isNamed = std::any_of(std::begin(PAPERS), std::end(PAPERS), [&](const Paper& p) { return paper == p.name; });
+        if (isNamed || !place(board, Size2d(parseSize(paper, "--paper"))))
+            throw Failure("--paper=" + paper + cv::format(": the board with its ruler needs %.0fx%.0f mm; take larger paper, or fewer or "
+                                                          "smaller squares", paper_.width, paper_.height));
     }
-    else
-        paper_ = Size2d(std::ceil(needed.width), std::ceil(needed.height));
     paperName_ = cv::format("%.0fx%.0f mm", paper_.width, paper_.height);
+}
+
+Point2d BoardPage::onPage(const Point2d& onBoard) const
+{
+    return isTurned_ ? Point2d(board_.br().x - onBoard.y, board_.y + onBoard.x) : board_.tl() + onBoard;
 }
 
 std::vector<Point2d> BoardPage::points() const
 {
     std::vector<Point2d> points;
     for (const cv::Point3d& p : target_.objectPoints())
-        points.emplace_back(board_.x + border() + p.x*millimetres_, board_.y + border() + p.y*millimetres_);
+        points.push_back(onPage(Point2d(border() + p.x*millimetres_, border() + p.y*millimetres_)));
     return points;
 }
 
 void BoardPage::drawBoard(cairo_t* cairo) const
 {
     const cv::Size squares(target_.size().width + 1, target_.size().height + 1);
+    const Point2d origin = onPage(Point2d()), x = onPage(Point2d(1, 0)) - origin, y = onPage(Point2d(0, 1)) - origin;
+    const cairo_matrix_t fromBoard = {x.x, x.y, y.x, y.y, origin.x, origin.y};
+    cairo_save(cairo);
+    cairo_transform(cairo, &fromBoard);
     if (target_.pattern() == Target::CHESSBOARD)
-        addChessboard(cairo, squares, square(), board_.tl());
+        addChessboard(cairo, squares, square(), Point2d());
     else if (target_.pattern() == Target::CHARUCO)
     {
         const cv::Mat modules = target_.modules();
-        addCharuco(cairo, modules, modules.cols/squares.width, square(), target_.marker()*millimetres_, board_.tl());
+        addCharuco(cairo, modules, modules.cols/squares.width, square(), target_.marker()*millimetres_, Point2d());
     }
     else if (target_.pattern() == Target::APRILGRID)
-        addAprilGrid(cairo, target_.size()/2, square(), target_.tagSpacing(), board_.tl());
+        addAprilGrid(cairo, target_.size()/2, square(), target_.tagSpacing(), Point2d());
     else
-        for (const Point2d& p : points())
+        for (const cv::Point3d& p : target_.objectPoints())
         {
             cairo_new_sub_path(cairo);
-            cairo_arc(cairo, p.x, p.y, border(), 0, 2*CV_PI);
+            cairo_arc(cairo, border() + p.x*millimetres_, border() + p.y*millimetres_, border(), 0, 2*CV_PI);
         }
     cairo_fill(cairo);
+    cairo_restore(cairo);
 }
 
 void BoardPage::write(const std::string& path, const std::vector<std::string>& lines) const

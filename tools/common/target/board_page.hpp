@@ -38,12 +38,16 @@ private:
     double square() const { return target_.square()*millimetres_; }
     double border() const;      //!< from the outermost points to the board's edge
     void drawBoard(_cairo* cairo) const;
-    void choosePaper(const std::string& paper, cv::Size2d needed);
+    void choosePaper(const std::string& paper, cv::Size2d board);
+    bool place(cv::Size2d board, cv::Size2d paper);     //!< false: it does not fit
+    cv::Size2d neededPaper() const;
+    cv::Point2d onPage(const cv::Point2d& onBoard) const;
 
     const Target& target_;
     double millimetres_;
     cv::Size2d paper_;
     cv::Rect2d board_;
+    bool isTurned_ = false;     //!< by a quarter, to fit on smaller paper
     std::string paperName_;
 };
 
