@@ -89,24 +89,28 @@ double contrastOfFirstSquare(const std::vector<Point2d>& points, Size size, cons
 }
 
 /* The sector-based detector is the more tolerant of blur and of boards that are partly cut off; the older one still
-finds some boards among clutter. But it takes half a minute, or several, where there is a board of another size, or curved by
-a wide-angle lens: so a glance at a small copy of the image goes before it, and its time is limited. */
-std::vector<Point2d> detectChessboard(const Mat& grey, Size size, Size& other, int seconds)
+finds some boards among clutter. But it takes half a minute, or several, where there is a board of another size, or a part of one, or one
+curved by a wide-angle lens: so a glance at a small copy of the image goes before it, and its time is limited. */
+std::vector<Point2d> detectChessboard(const Mat& grey, Size size, Size* other, int seconds)
 {
     std::vector<Point2f> corners;
     if (!findChessboardCornersSB(grey, size, corners, CALIB_CB_EXHAUSTIVE)
         || !isChessboard(toDouble(corners), size, grey))
     {
-        const Size glance = lookForChessboard(grey);
-        if (sorted(glance) != sorted(size))
-            other = sorted(glance);
-        if (other.width > sorted(size).width || other.height > sorted(size).height)
+        if (!other && !checkChessboard(grey, size))         // nor would the older one find any
+            return {};
+        const SeenChessboard glance = lookForChessboard(grey);
+        const Size seenSize = sorted(glance.size) != sorted(size) ? sorted(glance.size) : Size();
+        if (other)
+            *other = seenSize;
+        if (seenSize.width > sorted(size).width || seenSize.height > sorted(size).height || !mayBeInView(glance, size, grey.size()))
             return {};
         corners = detectByOldChessboard(grey, size, seconds);
         if (corners.empty() || !isChessboard(toDouble(corners), size, grey))
             return {};
     }
-    other = Size();
+    if (other)
+        *other = Size();
     refineCorners(grey, corners, 0.35);
     return toDouble(corners);
 }

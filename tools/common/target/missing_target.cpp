@@ -131,7 +131,7 @@ cv::Size chessboardIn(const std::vector<Without>& images, Channel channel)
 {
     std::vector<Without> seen(images.begin(), images.begin() + (long)std::min(images.size(), TRIED));
     for (Without& image : seen)
-        image.chessboard = sorted(lookForChessboard(readGrey(image.path, channel)));
+        image.chessboard = sorted(lookForChessboard(readGrey(image.path, channel)).size);
     return seen.size() > 1 ? usualSize(seen) : seen[0].chessboard;
 }
 

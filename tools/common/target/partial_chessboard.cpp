@@ -84,21 +84,49 @@ bool glimpseChessboard(const Mat& grey, Size size)
     return findChessboardCornersSB(smallCopy(grey), size, corners);
 }
 
-Size lookForChessboard(const Mat& grey)
+SeenChessboard lookForChessboard(const Mat& grey)
 {
     const int leastCorners = 12;
     const Mat copy = smallCopy(grey);
-    Size largest;
+    SeenChessboard largest;
     for (int start = LEAST + 2; start >= LEAST; start--)        // none of them finds every board
     {
         Mat meta;
         std::vector<Point2f> corners;
         if (findChessboardCornersSB(copy, Size(start, start), corners, CALIB_CB_EXHAUSTIVE | CALIB_CB_LARGER, meta)
-            && meta.size().area() >= std::max(leastCorners, largest.area() + 1)
+            && meta.size().area() >= std::max(leastCorners, largest.size.area() + 1)
             && isEvenGrid(std::vector<Point2d>(corners.begin(), corners.end()), meta.size()))
-            largest = meta.size();
+            largest = {meta.size(), corners};
     }
+    for (Point2f& corner : largest.corners)
+        corner *= (float)grey.cols/(float)copy.cols;
     return largest;
+}
+
+bool mayBeInView(const SeenChessboard& piece, Size size, Size image)
+{
+    const int TELLING = 4;              // a smaller part of a board is seen in many things
+    const double BENT = 0.05;           // of the image: a lens bends rows
+    if (TELLING*piece.size.area() < size.area())
+        return true;
+    std::vector<Point2f> grid;
+    for (int row = 0; row < piece.size.height; row++)
+        for (int column = 0; column < piece.size.width; column++)
+            grid.emplace_back((float)column, (float)row);
+    const Mat H = findHomography(grid, piece.corners);
+    const Point2d room(BENT*image.width, BENT*image.height);
+    const Rect2d within(-room, Point2d(image.width, image.height) + room);
+    for (const Size board : {size, Size(size.height, size.width)})
+        for (int right = 0; right <= board.width - piece.size.width && !H.empty(); right++)
+            for (int down = 0; down <= board.height - piece.size.height; down++)
+            {
+                const Point2f first((float)-right, (float)-down), last = first + Point2f((float)board.width - 1, (float)board.height - 1);
+                std::vector<Point2f> corners;
+                perspectiveTransform(std::vector<Point2f>{first, {last.x, first.y}, last, {first.x, last.y}}, corners, H);
+                if (std::all_of(corners.begin(), corners.end(), [&](const Point2f& p) { return within.contains(Point2d(p)); }))
+                    return true;
+            }
+    return H.empty();
 }
 
 bool isEvenGrid(const std::vector<Point2d>& points, Size size)

@@ -21,8 +21,19 @@ std::vector<cv::Point2d> detectPartialChessboard(const cv::Mat& grey, cv::Size s
 //! Whether a chessboard of that size is seen in a small copy of the image.
 bool glimpseChessboard(const cv::Mat& grey, cv::Size size);
 
-//! Size of the largest chessboard that is seen in a small copy of the image, whatever it is; empty if there is none.
-cv::Size lookForChessboard(const cv::Mat& grey);
+//! Inner corners that were seen, row by row; none: of size 0.
+struct SeenChessboard
+{
+    cv::Size size;
+    std::vector<cv::Point2f> corners;       //!< pixels of the image
+};
+
+//! The largest chessboard that is seen in a small copy of the image, whatever it is.
+SeenChessboard lookForChessboard(const cv::Mat& grey);
+
+/** False if a piece of the board was seen, and wherever on the board that piece may be, a part of the board is out of the image.
+@param size of the whole board */
+bool mayBeInView(const SeenChessboard& piece, cv::Size size, cv::Size image);
 
 /** False if the steps along some row or column change more abruptly than perspective can make them: the detector has
 skipped corners, or taken cut squares for whole ones. NaN points are passed over. */

@@ -167,7 +167,6 @@ std::vector<std::pair<int, int>> Target::neighbours() const
 
 std::vector<Point2d> Target::detect(const Mat& grey, Size* other, Effort effort) const
 {
-    Size seenSize;
     const int hurried = 2 + (int)(grey.total()/1000000);        // so that a large image is not given up for its size
     const int secondsOfChessboard = effort == HURRIED ? std::min(hurried, 5) : 5;
     const int secondsOfDots = effort == HURRIED ? std::min(hurried, 20) : 20;
@@ -179,17 +178,15 @@ std::vector<Point2d> Target::detect(const Mat& grey, Size* other, Effort effort)
         return detectListedDots(grey, objectPoints_);
     if (partial_)
         return detectPartialChessboard(grey, size_);
-    const std::vector<Point2d> points = pattern_ == CHESSBOARD ? detectChessboard(grey, size_, seenSize, secondsOfChessboard)
+    const std::vector<Point2d> points = pattern_ == CHESSBOARD ? detectChessboard(grey, size_, other, secondsOfChessboard)
         : detectCircleGrid(grey, size_, pattern_ == ACIRCLES, secondsOfDots);
-    if (other)
-        *other = seenSize;
     return points.empty() ? points : canonical(points, grey);
 }
 
 bool Target::glimpse(const Mat& grey) const
 {
     if (partial_)
-        return !lookForChessboard(grey).empty();
+        return !lookForChessboard(grey).size.empty();
     return pattern_ == CHESSBOARD ? glimpseChessboard(grey, size_) : !detect(grey, nullptr, HURRIED).empty();
 }
 

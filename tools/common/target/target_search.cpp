@@ -67,10 +67,12 @@ TargetSearch::TargetSearch(const std::string& source, const std::vector<std::str
 
 void TargetSearch::search(const std::vector<int>& which, Target::Effort effort, Progress& progress)
 {
+    // What else may be in an image is asked for only where nothing is found in any.
+    const bool isSizeKnown = std::any_of(results_.begin(), results_.end(), [](const Result& result) { return !result.points.empty(); });
     forEach(which, [&](int i) {
         progress.at(paths_[i]);
         Result& result = results_[i];
-        result.points = detectIn(readGrey(paths_[i], channel_), paths_[i], target_, &result.other, effort);
+        result.points = detectIn(readGrey(paths_[i], channel_), paths_[i], target_, isSizeKnown ? nullptr : &result.other, effort);
         result.done = effort == Target::THOROUGH || !result.points.empty();
         if (result.done)
             progress.step();
@@ -93,7 +95,7 @@ void TargetSearch::lookForOthers(const std::vector<int>& which)
     if (target_.pattern() != Target::CHESSBOARD)
         return;
     forEach(which, [&](int i) {
-        const cv::Size seen = lookForChessboard(readGrey(paths_[i], channel_)), whole = target_.size();
+        const cv::Size seen = lookForChessboard(readGrey(paths_[i], channel_)).size, whole = target_.size();
         if (seen != whole && seen != cv::Size(whole.height, whole.width))
             results_[i].other = cv::Size(std::max(seen.width, seen.height), std::min(seen.width, seen.height));
     });
