@@ -4,6 +4,7 @@
 // A search that would never end, and the progress that is told meanwhile.
 #include "console/progress.hpp"
 #include "target/limited_search.hpp"
+#include "target/partial_chessboard.hpp"
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <csignal>
@@ -23,6 +24,23 @@ double secondsOf(const std::function<void()>& work)
 }
 
 } // namespace
+
+TEST_CASE("A board that is partly out of the picture is told by what is seen of it, one that is hidden in part is not", "[limited_search]")
+{
+    const cv::Size board(9, 6), image(640, 480);
+    const auto pieceAt = [](cv::Point2f first, float step, cv::Size size) {
+        SeenChessboard piece{size, {}};
+        for (int row = 0; row < size.height; row++)
+            for (int column = 0; column < size.width; column++)
+                piece.corners.push_back(first + step*cv::Point2f((float)column, (float)row));
+        return piece;
+    };
+    CHECK_FALSE(mayBeInView(pieceAt({20, 60}, 90, {6, 5}), board, image));          // three more columns to the left or right
+    CHECK_FALSE(mayBeInView(pieceAt({60, 20}, 90, {5, 6}), board, image));          // however it was counted
+    CHECK(mayBeInView(pieceAt({20, 60}, 40, {6, 5}), board, image));                // they would be in view
+    CHECK(mayBeInView(pieceAt({20, 60}, 90, {4, 3}), board, image));                // as much may be anything
+    CHECK(mayBeInView(SeenChessboard(), board, image));
+}
 
 TEST_CASE("A search ends in its time, whatever it does", "[limited_search]")
 {
