@@ -24,5 +24,8 @@ TEST_CASE("A misspelled key is refused, one of another program not", "[keys]")
         CAPTURE(key);
         CHECK_THROWS_WITH(check(key), Catch::Contains("'" + key + "'") && Catch::Contains("is it '"));
     }
+    const cv::FileStorage shorter("%YAML:1.0\n---\nseedx: 1\n", cv::FileStorage::READ | cv::FileStorage::MEMORY);
+    CHECK_THROWS_WITH(requireNoMisspelling(shorter.root(), {"seed"}, "rig.yml", 4), Catch::Contains("is it 'seed'"));
+    CHECK_NOTHROW(requireNoMisspelling(shorter.root(), {"sets", "seek"}, "rig.yml", 4));
     CHECK_NOTHROW(requireNoMisspelling(cv::FileNode(), known, "rig.yml"));
 }

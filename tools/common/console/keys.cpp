@@ -91,12 +91,12 @@ size_t editDistance(const std::string& a, const std::string& b)
 
 void requireNoMisspelling(const FileNode& node, const std::vector<std::string>& known, const std::string& filename, size_t shortest)
 {
-    const size_t FEW = 2;               // letters
+    const size_t FEW = 2, SHORT = 6;    // letters, of a shorter name one
     const auto isKnown = [&known](const std::string& key) {         // with a number it is that of another camera
         return std::find(known.begin(), known.end(), key.substr(0, key.find_last_not_of("0123456789") + 1)) != known.end(); };
     for (const std::string& key : node.isMap() ? node.keys() : std::vector<std::string>())
         for (const std::string& name : known)
-            if (name.size() >= shortest && !isKnown(key) && editDistance(key, name) <= FEW)
+            if (name.size() >= shortest && !isKnown(key) && editDistance(key, name) <= (name.size() < SHORT ? 1 : FEW))
                 throw Failure("'" + filename + "' has a key '" + key + "', which nothing reads: is it '" + name + "'?");
 }
 

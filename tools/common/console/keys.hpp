@@ -34,8 +34,8 @@ private:
     std::string name_;
 };
 
-/** Of files that may have other programs' keys, too: throws Failure for a key that is nearly a known one (two letters less, more or other),
-and no other's, so that a typing error does not become a default.
+/** Of files that may have other programs' keys, too: throws Failure for a key that is nearly a known one (two letters less, more or other,
+of a short one one), and no other's, so that a typing error does not become a default.
 @param shortest letters: of a shorter name few make another */
 void requireNoMisspelling(const cv::FileNode& node, const std::vector<std::string>& known, const std::string& filename,
                           size_t shortest = 9);

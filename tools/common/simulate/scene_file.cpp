@@ -262,7 +262,9 @@ Scene readScene(const std::string& filename)
         if (c.camera->imageSize().empty())
             throw Failure("'" + filename + "': image_width and image_height of each camera are needed");
     const FileStorage fs(filename, FileStorage::READ);
-    requireNoMisspelling(fs.root(), {"target", "exposure", "channels", "emitters", "texture"}, filename, 6);
+    const size_t SHORTEST = 4;
+    requireNoMisspelling(fs.root(), {"target", "exposure", "channels", "emitters", "texture", "seed", "poses", "sets", "scene"}, filename,
+                         SHORTEST);
     if (fs["target"].empty() && fs["scene"].empty())
         throw Failure("'" + filename + "' has no 'target' and no 'scene', so there is nothing to render (see refract_simulate "
                       "--help)");
