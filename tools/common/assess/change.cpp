@@ -255,7 +255,7 @@ private:
         add("focal length and principal point" + of + " changed by", c, {percent(WIDE), pixels},
             [lensBy](RigModel& rig, const VectorXd& d) { lensBy(1. + d[0], d[1], d[2])(rig); });
         for (size_t row = rows.size() - 3; row < rows.size(); row++)
-            rows[row].isUnlikely = true;
+            rows[row].ease = Change::UNLIKELY;
     }
 
     void addPlace(int c)
@@ -267,7 +267,7 @@ private:
         const double range = WIDE*depth_;
         add(c == 0 ? "camera 1 turned about its own centre by" : format("R of camera %d (turned about its own centre) changed by", c + 1),
             c, {angle(3)}, [c](RigModel& rig, const VectorXd& d) { moveCamera(rig, c, {rotationMatrix(first3(d)), Vec3d()}); });
-        rows.back().isTurn = true;
+        rows.back().ease = Change::CAMERA_TURNS;
         chart(c == 0 ? "R of camera 1" : "R of " + camera, {"x", "y", "z"});
         add(c == 0 ? "camera 1 shifted by" : "T of " + camera + " changed by", c, {length(3, range)},
             [c](RigModel& rig, const VectorXd& d) { moveCamera(rig, c, {Matx33d::eye(), first3(d)}); });
@@ -293,8 +293,7 @@ private:
                     moveCamera(rig, 0, {rotationMatrix(first3(d)), Vec3d()});
                 else
                     rig.extrinsics[c].R = rotationMatrix(first3(d))*rig.extrinsics[c].R; });
-        rows.back().isTurn = isOfFirst;
-        rows.back().isUnlikely = !isOfFirst;        // a camera that turns about no centre
+        rows.back().ease = isOfFirst ? Change::FIRST_CAMERA_TURNS : Change::UNLIKELY;   // which turns about no centre
         rows.back().axes = {"x", "y", "z"};
     }
 
@@ -384,7 +383,7 @@ std::string sentenceOf(const Change& change, const std::vector<ChangedValue>& va
     {
         text += (i ? " and " : " ") + plusMinus(values[i].value, values[i].std) + (values[i].unit.empty() ? "" : " " + values[i].unit);
         std::string separator = " (";
-        const bool tellsAxes = change.isTurn || isUnevenlyKnown(values[i].aboutAxes);
+        const bool tellsAxes = change.isTurn() || isUnevenlyKnown(values[i].aboutAxes);
         for (size_t a = 0; tellsAxes && a < values[i].aboutAxes.size(); a++)
         {
             const ValueAboutAxis& about = values[i].aboutAxes[a];

@@ -30,13 +30,14 @@ struct Change
     bool isTilt = false;        //!< of the window of that camera
     bool isShift = false;       //!< of the centre of its dome or tube
     bool isOfAnotherPane = false;       //!< thickness, index, wedge: one that stays where it is keeps them
-    bool isTurn = false;        //!< of a camera about its own centre
-    bool isUnlikely = false;    //!< beside a camera or a window that moved in its mount: of a lens, or no motion at all
+    //! Of what explains a scene as well as others, the lesser is told first: what moves most easily.
+    enum Ease { CAMERA_TURNS, FIRST_CAMERA_TURNS, MOVES, UNLIKELY } ease = MOVES;
     //! What may also come slowly, of heat, load or age, has a control chart (history/): its name; empty: none.
     std::string chart = "";
     std::vector<std::string> axes = {};     //!< of its parameters, in that chart and in sentences
     double chartFactor = 1.;                //!< from the parameter to the chart's unit
 
+    bool isTurn() const { return ease <= FIRST_CAMERA_TURNS; }     //!< of a camera about its own centre
     int size() const;
     VectorXd ranges() const;
 };

@@ -268,11 +268,11 @@ CheckProblem::Information CheckProblem::information(const std::vector<Change>& c
     H.diagonal().array() += 1.;
     const MatrixXd mixed = transposeTimes(rows.byQ, effect, precision);
     const LDLT ldlt(H);
+    const VectorXd alongQ = transposeTimesVector(rows.byQ, r, precision), q = ldlt.solve(alongQ);
     Information result;
+    result.chiSquare = precision*r.squaredNorm() - alongQ.dot(q);
     result.G = transposeTimes(effect, effect, precision) - transposeTimes(mixed, ldlt.solve(mixed));
-    result.score = precision*(transposeTimesVector(effect, r)
-                              - timesVector(transposeTimes(effect, rows.byQ),
-                                            ldlt.solve(transposeTimesVector(rows.byQ, r, precision))));
+    result.score = precision*(transposeTimesVector(effect, r) - timesVector(transposeTimes(effect, rows.byQ), q));
     result.byParameters = transposeTimes(ldlt.solve(mixed), inverseRoot_.transpose());    // B^T S^-1 A L = (H^-1 mixed)^T
     return result;
 }

@@ -58,6 +58,7 @@ public:
         MatrixXd G;
         VectorXd score;
         MatrixXd byParameters;      //!< D
+        double chiSquare;           //!< r^T S^-1 r, of no change
     };
     Information information(const std::vector<Change>& changes, const CheckFit& at) const;
 

@@ -13,6 +13,7 @@
 #include "math/dense.hpp"
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <memory>
 
 using namespace cv;
@@ -82,8 +83,20 @@ private:
         problem_ = std::move(problem);
         unchanged_ = unchanged_.rows ? problem_->fitUnchanged(unchanged_) : problem_->fitUnchanged();
         changes_ = changesOf(input_.rig, unit_, middleOfPoints());
-        if (std::isfinite(unchanged_.chiSquare))
-            information_ = problem_->information(changes_, unchanged_);
+        if (!std::isfinite(unchanged_.chiSquare))
+            return;
+        // A scene's points and its noise follow the rig: where that is bent, they are far from straight.
+        const bool isBent = isScene_ && isFar();
+        if (isBent && !asCalibrated_.rows)
+            asCalibrated_ = problem_->asCalibrated();
+        information_ = problem_->information(changes_, isBent ? asCalibrated_ : unchanged_);
+    }
+
+    //! All else was bent far to explain a large change.
+    bool isFar() const
+    {
+        const double FAR = 5.;          // standard deviations
+        return unchanged_.q.squaredNorm() > FAR*FAR*unchanged_.q.size();
     }
 
     void conclude()
@@ -138,7 +151,7 @@ private:
         result_.dof = problem_->observations() - told;
         if (!(result_.dof > 0.))
             throw Failure(format("%d matches are too few to tell %d numbers of what may have changed", problem_->observations(), told));
-        const double left = std::max(unchanged_.chiSquare - gain, LEFT*unchanged_.chiSquare);
+        const double left = std::max(information_.chiSquare - gain, LEFT*information_.chiSquare);
         result_.sigma *= std::sqrt(left/result_.dof);
         result_.noiseHere = result_.sigma;
     }
@@ -181,7 +194,8 @@ private:
         std::vector<double> ranges;
         ChartedScore& charted = result_.charted;
         // About the calibrated values: what a large change makes of the others is far from linear.
-        asCalibrated_ = problem_->asCalibrated();
+        if (!asCalibrated_.rows)
+            asCalibrated_ = problem_->asCalibrated();
         const CheckProblem::Information information = problem_->information(changes_, asCalibrated_);
         if (information.G.size() == 0)
             return;
@@ -238,16 +252,26 @@ private:
         if (std::isfinite(tested.fit.chiSquare))
             return;
         const MatrixXd directions = tested.change->ranges().asDiagonal()*tested.at.directions;
-        // Where all else was bent far to explain a large change, the way back is long, and may be barred.
-        const double FAR = 5.;          // standard deviations
-        const bool isFar = unchanged_.q.squaredNorm() > FAR*FAR*unchanged_.q.size();
-        tested.fit = problem_->fit(*tested.change, directions, isFar ? asCalibrated_ : unchanged_);
+        // From where all else was bent far to explain a large change, the way back is long, and may be barred.
+        tested.fit = problem_->fit(*tested.change, directions, isFar() ? asCalibrated_ : unchanged_);
         // With more free the best is not worse: else this is another minimum. Of boards, of which images may be exchanged, there are many.
-        if (!isFar || (isScene_ && tested.fit.chiSquare <= unchanged_.chiSquare))
+        if (!isFar() || (isScene_ && tested.fit.chiSquare <= unchanged_.chiSquare))
             return;
         const CheckFit other = problem_->fit(*tested.change, directions, unchanged_);
         if (other.chiSquare < tested.fit.chiSquare)
             tested.fit = other;
+    }
+
+    //! Each by itself, on all processors.
+    void fitThose(const std::function<bool(const Tested&)>& isWanted)
+    {
+        std::vector<Tested*> those;
+        for (Tested& tested : tested_)
+            if (isWanted(tested))
+                those.push_back(&tested);
+        parallel_for_(Range(0, (int)those.size()), [&](const Range& range) {
+            for (int i = range.start; i < range.end; i++)
+                fitOf(*those[i]); }, (double)those.size());
     }
 
     void addCandidate(const Tested& tested)
@@ -318,9 +342,7 @@ private:
             largest = std::max(largest, tested.gain);
         // A scene has thousands of points: what gains far less, to first order, is not fitted.
         const double FAR_LESS = 0.5;
-        for (Tested& tested : tested_)
-            if (!isScene_ || tested.gain > FAR_LESS*largest)
-                fitOf(tested);
+        fitThose([&](const Tested& tested) { return !isScene_ || tested.gain > FAR_LESS*largest; });
         for (const Tested& tested : tested_)
             addCandidate(tested);
         addUndone(isScene_ ? std::vector<Undone>() : unrelatedImages(input_.rig, views_));
@@ -359,22 +381,21 @@ private:
         result_.sigmaSeen = result_.sigma*std::sqrt(named_[0].chiSquare/(problem_->observations() - named_[0].parameters));
     }
 
-    /* What explains as much is told in the order of what can happen. Nobody said that the pane is another. And a camera or a window moves
-    in its mount before a sensor does in its camera: a scene hardly tells a turn from a moved principal point. */
+    /* What explains as much is told in the order of what can happen. Nobody said that the pane is another. And of a scene: a camera turns
+    in its mount before a window moves, and both before a sensor does in its camera, which a scene hardly tells from a turn. About the base
+    line a turn of one of two cameras is one of the other: it is said of the second. */
     void tellWhatCanHappenFirst()
     {
-        const double AS_LIKELY = 10.;           // difference of two chi^2
-        const auto isUnlikely = [](const Candidate& c) { return c.tested && c.tested->change->isUnlikely; };
-        if (isScene_ && !named_.empty() && isUnlikely(named_[0]))
-        {
-            const double most = named_[0].chiSquare + AS_LIKELY;
-            const auto other = std::find_if(named_.begin(), named_.end(), [&](const Candidate& c) {
-                return !isUnlikely(c) && c.chiSquare < most; });
-            if (other != named_.end())
-                std::rotate(named_.begin(), other, other + 1);
-        }
         std::stable_partition(named_.begin(), named_.end(), [](const Candidate& c) {
             return !c.tested || !c.tested->change->isOfAnotherPane; });
+        if (!isScene_ || named_.empty() || named_[0].tested->change->isOfAnotherPane)
+            return;
+        const double AS_LIKELY = 10.;           // difference of two chi^2
+        auto first = named_.begin();
+        for (auto c = first; c != named_.end() && !c->tested->change->isOfAnotherPane; ++c)
+            if (c->chiSquare < named_[0].chiSquare + AS_LIKELY && c->tested->change->ease < first->tested->change->ease)
+                first = c;
+        std::rotate(named_.begin(), first, first + 1);
     }
 
     bool isNamed(const Tested& tested) const
@@ -384,13 +405,12 @@ private:
 
     void addWindows()
     {
-        for (Tested& tested : tested_)
-        {
-            if (!(tested.change->isTilt || tested.change->isShift) || tested.at.count() < tested.change->size())
-                continue;
-            fitOf(tested);
-            result_.windows.push_back(windowOf(tested));
-        }
+        const auto isTold = [](const Tested& t) {
+            return (t.change->isTilt || t.change->isShift) && t.at.count() == t.change->size(); };
+        fitThose(isTold);
+        for (const Tested& tested : tested_)
+            if (isTold(tested))
+                result_.windows.push_back(windowOf(tested));
     }
 
     //! The covariance of the linear test, which holds whatever was found.
@@ -406,7 +426,7 @@ private:
         for (const Tested& tested : tested_)
         {
             const Change& change = *tested.change;
-            if (!change.isTurn || tested.at.count() < change.size())
+            if (!change.isTurn() || tested.at.count() < change.size())
                 continue;
             const double variance = SymmetricEigen(covarianceOf(tested)).values.maxCoeff();
             result_.turns.push_back({change.name, change.camera, std::sqrt(variance)*DEGREES, tested.at.count(), tested.probability});

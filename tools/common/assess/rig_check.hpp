@@ -32,7 +32,6 @@ struct WindowCheck
     bool moved;                 //!< this explains the images, and nothing that is not a window does so better
 };
 
-//! A change that explains the new images.
 //! Of a camera against the others.
 struct TurnCheck
 {
@@ -43,6 +42,7 @@ struct TurnCheck
     double probability;         //!< of so large a turn or a larger one if nothing changed
 };
 
+//! A change that explains the new images.
 struct NamedChange
 {
     std::string name, sentence;     //!< the name alone, and with its values

@@ -81,12 +81,13 @@ void printTurns(const CheckResult& result, const CheckOptions& o)
 }
 
 //! Of how many matches, and what these cannot tell.
-void printScene(const SceneMatches& matches)
+void printScene(const SceneMatches& matches, bool isPair)
 {
     std::cout << '\n';
     printLines(format("%d matches of %d moment%s; %d more left out as no point explains them, about %.0f wrong ones among the "
                       "rest.", matches.good.size(), matches.moments, matches.moments == 1 ? "" : "s", matches.leftOut, matches.wrongLeft));
-    printLines("No scene shows a turn of the whole rig, or another scale.");
+    printLines(std::string("No scene shows a turn of the whole rig, or another scale")
+               + (isPair ? ", or which of two cameras turned about the line between them." : "."));
 }
 
 } // namespace
@@ -134,7 +135,7 @@ void printCheck(const CheckResult& result, const CheckOptions& o, const CheckInp
     printLines(format("Noise of a pixel coordinate: %.4f px here", result.sigmaSeen) + known
                + format(". False alarms: %g%s.", o.falseAlarm, o.hasHistory() ? ", of the charts and this check together" : ""));
     if (o.isOfScene())
-        printScene(images.scene);
+        printScene(images.scene, input.rig.cameras.size() == 2);
 }
 
 } // namespace tools
