@@ -261,6 +261,29 @@ TEST_CASE("A turn that a calibration contradicts by far leaves the noise of a sc
     CHECK(result.turns[0].stdDeg < 1.3*unchanged.turns[0].stdDeg);
 }
 
+TEST_CASE("A part of an image that moved by less than one match shows is left out as a whole", "[tools][match]")
+{
+    const double SIGMA = 0.05, MOVED = 3*SIGMA;
+    Rig rig(478);
+    const FeatureNoise noise{ { SIGMA, 0 }, 0, 0, { { 1, 1 } } };
+    ScaledMatches all = drawSeen(rig, { 4, 1200 }, noise);
+    const auto moves = [](const Matches& m, int i) {
+        return m.names[i].image == "0" && m.pixels[0][i].x < SIZE.width/4. && m.pixels[0][i].y < SIZE.height/2.; };
+    int moving = 0, left = 0;
+    for (int i = 0; i < all.size(); i++)
+        if (moves(all.matches, i))
+        {
+            all.matches.pixels[1][i].y += MOVED;
+            moving++;
+        }
+    const Matches good = matcherOf(rig.calibration).goodOf(all).good.matches;
+    for (int i = 0; i < (int)good.names.size(); i++)
+        left += moves(good, i);
+    CHECK(moving > 20);
+    CHECK(left < 0.2*moving);
+    CHECK((int)good.names.size() - left > 0.9*(all.size() - moving));
+}
+
 TEST_CASE("What moves most easily is told first of what explains a scene as well", "[tools][match][check]")
 {
     for (unsigned salt = 472; salt < 478; salt++)

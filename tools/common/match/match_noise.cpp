@@ -72,10 +72,11 @@ MatchNoise noiseOfMedian(const std::vector<MatchResidual>& residuals)
 
 double MatchNoise::stdOf(double scale) const { return std::hypot(floor, share*scale); }
 
+double MatchNoise::varianceOf(const MatchResidual& residual) const { return floor*floor + share*share*residual.scale2; }
+
 bool MatchResidual::isWithin(const MatchNoise& noise) const
 {
-    const double variance = noise.floor*noise.floor + noise.share*noise.share*scale2;
-    return count > 0 && (squares <= 0. || upperTailChiSquared(count, squares/variance) > RARE);
+    return count > 0 && (squares <= 0. || upperTailChiSquared(count, squares/noise.varianceOf(*this)) > RARE);
 }
 
 std::vector<MatchResidual> residualsOf(const ScaledMatches& scaled, const RigModel& rig)

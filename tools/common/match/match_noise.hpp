@@ -13,11 +13,14 @@
 Both numbers come from the residuals of the matches themselves, by maximum likelihood: they differ with texture, blur and light. */
 namespace tools {
 
+struct MatchResidual;
+
 struct MatchNoise
 {
     double floor = 0., share = 0.;
 
     double stdOf(double scale) const;
+    double varianceOf(const MatchResidual& residual) const;     //!< of each of its numbers
 };
 
 //! What the residuals of one match tell: of n cameras 2 n - 3 numbers, as the rest of its pixels is the point's.

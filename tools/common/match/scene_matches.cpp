@@ -9,10 +9,13 @@
 #include "match/chains.hpp"
 #include "match/moved_rig.hpp"
 #include "match/pair_mistakes.hpp"
+#include "measure/chi_squared.hpp"
 #include "measure/measurement.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <tuple>
 
 using namespace cv;
 
@@ -90,6 +93,44 @@ double rmsOf(const std::vector<MatchResidual>& residuals, const std::vector<int>
         count += residuals[i].count;
     }
     return count > 0 ? std::sqrt(squares/count) : NaN;
+}
+
+/* What moves between the images of a moment errs together, and may move so little across its curves that no match of it is a wrong one by
+itself: where all that is left of a part of an image misses by more than noise, it is left out as a whole. */
+std::vector<int> withoutMovedParts(const ScaledMatches& scaled, const RigModel& rig, const std::vector<MatchResidual>& residuals,
+                                   const MatchNoise& noise, const std::vector<int>& good)
+{
+    const int ACROSS = 4;               // parts
+    const double RARE = 1e-4, MUCH = 2.;        // of parts that stand still; mean square, of which less is no motion
+    struct Part
+    {
+        std::vector<int> matches;
+        double squares = 0.;            // over their variances
+        int count = 0;
+    };
+    std::map<std::tuple<std::string, int, int, int>, Part> parts;
+    for (int i : good)
+    {
+        int c = 0;
+        while (!scaled.matches.isSeen(c, i))
+            c++;
+        const Size size = rig.cameras[c]->imageSize();
+        const Point2d p = scaled.matches.pixels[c][i];
+        Part& part = parts[{scaled.matches.names[i].image, c, (int)(ACROSS*p.x/size.width), (int)(ACROSS*p.y/size.height)}];
+        part.matches.push_back(i);
+        part.squares += residuals[i].squares/noise.varianceOf(residuals[i]);
+        part.count += residuals[i].count;
+    }
+    std::vector<int> still;
+    for (const auto& named : parts)
+    {
+        const Part& part = named.second;
+        const bool hasMoved = part.squares > MUCH*part.count && upperTailChiSquared(part.count, part.squares) < RARE;
+        if (!hasMoved)
+            still.insert(still.end(), part.matches.begin(), part.matches.end());
+    }
+    std::sort(still.begin(), still.end());
+    return still;
 }
 
 //! Matches by chance are anywhere within the search, right ones within a few standard deviations.
@@ -192,6 +233,7 @@ std::vector<int> SceneMatcher::leaveOutWrong(ScaledMatches& scaled, SceneMatches
         for (int i = 0; i < scaled.size(); i++)
             if (residuals[i].isWithin(result.noise))
                 good.push_back(i);
+        good = withoutMovedParts(scaled, rig, residuals, result.noise, good);
         result.residual = rmsOf(residuals, good);
         if (!isLast)
             rig = adjustBundle(start, scaled.only(good).matches, {}, false).fit.rig;
