@@ -54,6 +54,12 @@ def test_points_from_fringes():
     assert 0.8 < number(r"([\d.]+) times the stated", out) < 1.25
 
 
+def test_turned_camera():
+    out = run("turned_camera.py")
+    found, std, true = map(float, re.search(r"about x by +([-\d.]+) \+- ([\d.]+) degrees \(true: ([-\d.]+)\)", out).groups())
+    assert true == -0.1 and abs(found - true) < 4*std < 0.02
+
+
 DROP_IN = [r"lengths on the board: ([\d.]+) mm", r"partners beside their epipolar curves: ([\d.]+) px",
            r"undistorted points: ([\d.]+) px"]
 
