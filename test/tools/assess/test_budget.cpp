@@ -85,6 +85,7 @@ TEST_CASE("The budget of a point adds up, and each source is worth what it does 
           == Approx(rowOf(ofExact, "noise of the point's own pixels").effect).epsilon(0.1));
     CHECK(rowOf(rows, "thickness, camera 1").effect > 0.);
     CHECK(ofExact.size() == 3);
+    CHECK(Std(192.4, "not given").text(" mm") == "190 mm (not given)");
 }
 
 TEST_CASE("Where a covariance was widened its sources are no more than all of it", "[budget]")

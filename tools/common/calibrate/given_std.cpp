@@ -29,7 +29,11 @@ const char* const DEFAULT = "default";
 
 std::string Std::text(const std::string& unit, double factor) const
 {
-    return cv::format("%.2g", value*factor) + unit + (source.empty() ? "" : " (" + source + ")");
+    const double number = value*factor;
+    std::string digits = cv::format("%.2g", number);
+    if (number >= 100.)
+        digits = cv::format("%.0f", std::stod(digits));     // no power of ten
+    return digits + unit + (source.empty() ? "" : " (" + source + ")");
 }
 
 Std usualStdOf(const GivenIndex& index)

@@ -225,7 +225,7 @@ void setLens(const LensChoice& choice, RigOptions& options)
             if (prior.at<double>(i, i) > 0)
                 longest = std::max(longest, LENGTHS[i - BEFORE + 1]);
     for (Mat& prior : options.leftOut)
-        if (countNonZero(prior == prior) == 0)      // NaN: nothing
+        if (prior.empty() || countNonZero(prior == prior) == 0)      // NaN: nothing
             prior = Mat();
         else if (!isFisheye)
             prior = prior(Rect(0, 0, BEFORE + longest, BEFORE + longest)).clone();
