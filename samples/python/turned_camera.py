@@ -22,8 +22,9 @@ OFFSET = 0.25                   # px, by which SIFT is off that doubles the imag
 
 def features(folder):
     image = cv2.imread(os.path.join(DATA, folder, "scene.jpg"), cv2.IMREAD_GRAYSCALE)
-    keys, descriptors = cv2.SIFT_create(4000).detectAndCompute(image, None)
-    return cv2.KeyPoint_convert(keys).astype(float) - OFFSET, descriptors
+    assert image is not None
+    keys, descriptors = cv2.SIFT.create(4000).detectAndCompute(image, None)
+    return np.array([key.pt for key in keys]) - OFFSET, descriptors
 
 
 def turned(rvec, R, T):
@@ -51,7 +52,7 @@ alike = [two[0] for two in cv2.BFMatcher(cv2.NORM_L2).knnMatch(descriptors1, des
 left, right = left[[m.queryIdx for m in alike]], right[[m.trainIdx for m in alike]]
 
 # Only what is near the refracted epipolar curve, within the depths of the scene, can be right.
-distances = refract.refractiveEpipolarDistance(left, right, *cameras, before, T, depthRange=DEPTHS)[0].ravel()
+distances = refract.refractiveEpipolarDistance(left, right, cameras[0], cameras[1], before, T, depthRange=DEPTHS)[0].ravel()
 near = np.abs(distances) < SEARCH               # false for nan
 
 # All points, and R and T of camera 2 within what it may have turned; the rest stays. Wrong matches are left out.
