@@ -214,21 +214,20 @@ LensChoice chooseLens(const RigData& data, const RigOptions& options, bool robus
 void setLens(const LensChoice& choice, RigOptions& options)
 {
     static const int LENGTHS[] = { 0, 4, 4, 4, 4, 5, 8, 8, 8 };     // of OpenCV's coefficients, among which are so many
-    const int BEFORE = 4;               // fx, fy, cx, cy
     const bool isFisheye = choice.lens().model == "fisheye";
     options.lensCoefficients = isFisheye ? FISHEYE_LENS : LENGTHS[choice.lens().coefficients];
     options.flags |= choice.lens().flags;
     options.leftOut = choice.leftOut;
     int longest = std::max(options.lensCoefficients, 0);
     for (const Mat& prior : choice.leftOut)
-        for (int i = BEFORE; i < prior.rows; i++)
+        for (int i = INTRINSICS; i < prior.rows; i++)
             if (prior.at<double>(i, i) > 0)
-                longest = std::max(longest, LENGTHS[i - BEFORE + 1]);
+                longest = std::max(longest, LENGTHS[i - INTRINSICS + 1]);
     for (Mat& prior : options.leftOut)
         if (prior.empty() || countNonZero(prior == prior) == 0)      // NaN: nothing
             prior = Mat();
         else if (!isFisheye)
-            prior = prior(Rect(0, 0, BEFORE + longest, BEFORE + longest)).clone();
+            prior = prior(Rect(0, 0, INTRINSICS + longest, INTRINSICS + longest)).clone();
 }
 
 } // namespace tools

@@ -13,6 +13,7 @@ namespace tools {
 
 //! Where a number of cv::calibrateCamera's coefficients may stand: cv::fisheye's model instead, which has four.
 const int FISHEYE_LENS = -1;
+const int INTRINSICS = 4;       //!< fx, fy, cx, cy: the parameters of a lens before its distortion coefficients
 
 //! A lens model that OpenCV calibrates.
 struct PinholeLens

@@ -87,13 +87,12 @@ int pinholeCoefficients(const RigModel& rig, int camera)
         return FISHEYE_LENS;
     if (model != "opencv" && model != "LENSMODEL_PINHOLE" && model.find("LENSMODEL_OPENCV") != 0)
         return RICHEST;
-    const int BEFORE = 4;       // fx, fy, cx, cy
     const Mat known = rig.known.empty() ? Mat() : rig.known[camera].covariance, lens = rig.cameras[camera]->lensParameters();
-    int count = lens.rows - BEFORE;
+    int count = lens.rows - INTRINSICS;
     const auto isLeftOut = [&](int i) { return known.at<double>(i, i) > 0 || lens.at<double>(i) == 0; };
     if (known.empty() || !std::isnan(known.at<double>(0, 0)) || count > RICHEST)
         return count;           // of a file
-    while (count > 0 && isLeftOut(BEFORE + count - 1))
+    while (count > 0 && isLeftOut(INTRINSICS + count - 1))
         count--;
     return count == 0 ? 0 : count <= 4 ? 4 : count == 5 ? 5 : RICHEST;
 }

@@ -280,9 +280,8 @@ Mat targetCovarianceOf(const RigData& data, const RigModel& rig, const GivenStd&
 
 int RigOptions::carriedCoefficients(int camera) const
 {
-    const int BEFORE = 4;               // fx, fy, cx, cy
     const bool isOpen = lensCoefficients != FISHEYE_LENS && !leftOut.empty() && !leftOut[camera].empty();
-    return isOpen ? leftOut[camera].rows - BEFORE : lensCoefficients;
+    return isOpen ? leftOut[camera].rows - INTRINSICS : lensCoefficients;
 }
 
 GlassWindow RigOptions::windowOf(int camera) const

@@ -93,8 +93,7 @@ public:
                 widest = &c;
         Problem problem(choice.fitted.rig, task_.views, choice.fitted.poses, std::vector<PosePrior>(), std::vector<CameraPrior>(),
                         flagsOf(*widest));
-        for (size_t i = 0; i < weights_.size(); i++)
-            problem.setRootWeights((int)i, weights_[i]);
+        weigh(problem);
         std::vector<std::vector<bool> > isLeftOut;
         for (const Camera& camera : given_.cameras)
         {
@@ -236,8 +235,7 @@ private:
             start.rig.cameras[c].setLensParameters(Mat(lens));
         }
         Problem problem(start.rig, task_.views, start.poses, std::vector<PosePrior>(), std::vector<CameraPrior>(), flags);
-        for (size_t i = 0; i < weights_.size(); i++)
-            problem.setRootWeights((int)i, weights_[i]);
+        weigh(problem);
         FitOutcome outcome = checkFreedom(problem);
         if (outcome.converged())
             outcome = minimize(problem, criteria);
@@ -257,6 +255,12 @@ private:
         for (const Image& image : problem.images())
             candidate.errors.push_back(problem.pixelErrors(image));
         return outcome;
+    }
+
+    void weigh(Problem& problem) const
+    {
+        for (size_t i = 0; i < weights_.size(); i++)
+            problem.setRootWeights((int)i, weights_[i]);
     }
 
     //! Of the richest lens that was fitted. False: there are no more.
