@@ -58,7 +58,7 @@ bool printRow(const Row& row, const Times& t, bool avx512)
 
 struct Options
 {
-    bool quick, growth, bundles;
+    bool quick, growth, bundles, lines;
     std::string only, isa;
     int points, rounds, surveys, surveysFrom, strips, views, arrays;
 };
@@ -70,6 +70,7 @@ const char KEYS[] =
     "{ bundles |        | large bundle adjustments, processor time, instead of the table }"
     "{ surveys | 0      | strips of 20, 100, 300, 1000, ... views, up to so many, instead of the table }"
     "{ surveys-from | 0 | views of the shortest of these }"
+    "{ lines   |        | of lines side by side, an area, in place of strips }"
     "{ strips | 0       | errors over stated of so many strips, instead of the table }"
     "{ views   | 20     | of each of these strips }"
     "{ arrays  | 0      | rings of 3, 6, 12, ... cameras above water, up to so many, instead of the table }"
@@ -95,8 +96,8 @@ Options optionsOf(int argc, char** argv)
         if (name.compare(0, 2, "--") != 0 || std::string(KEYS).find("{ " + name.substr(2) + ' ') == std::string::npos)
             throw std::runtime_error("there is no option " + argument + ", see --help");
     }
-    const Options o = { parser.has("quick"), parser.has("growth"), parser.has("bundles"), parser.get<std::string>("only"),
-                        parser.get<std::string>("isa"), parser.get<int>("points"), parser.get<int>("rounds"),
+    const Options o = { parser.has("quick"), parser.has("growth"), parser.has("bundles"), parser.has("lines"),
+                        parser.get<std::string>("only"), parser.get<std::string>("isa"), parser.get<int>("points"), parser.get<int>("rounds"),
                         parser.get<int>("surveys"), parser.get<int>("surveys-from"), parser.get<int>("strips"), parser.get<int>("views"),
                         parser.get<int>("arrays") };
     if (!parser.check() || o.points < 1 || o.rounds < 1 || o.views < 7 || (o.isa != "baseline" && o.isa != "avx2" && o.isa != "avx512"))
@@ -116,7 +117,7 @@ try
     if (o.bundles || o.surveys > 0 || o.strips > 0 || o.arrays > 0)
     {
         o.bundles ? printBundles() : o.arrays > 0 ? printArrays(o.arrays)
-        : o.strips > 0 ? printManySurveys(o.views, o.strips) : printSurveys(o.surveysFrom, o.surveys);
+        : o.strips > 0 ? printManySurveys(o.views, o.strips) : printSurveys(o.surveysFrom, o.surveys, o.lines);
         return 0;
     }
     cv::setNumThreads(2);       // its workers start here, where they may run anywhere

@@ -1,8 +1,8 @@
 // This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
 // SPDX-License-Identifier: Apache-2.0
 
-// A camera behind a flat port moves along a strip of the sea floor, as photogrammetry has it: 200 new points an image, each seen by
-// seven or eight. Lens and window are known to what a calibration says.
+// A camera behind a flat port moves above the sea floor, as photogrammetry has it: along a strip, 200 new points an image, each seen by
+// seven or eight; or along lines side by side, each point seen by about ten. Lens and window are known to what a calibration says.
 #include "surveys.hpp"
 #include "measure.hpp"
 
@@ -20,8 +20,8 @@ namespace bench {
 
 namespace {
 
-const double RANGE = 1500, STEP = 110, WIDTH = 1000, RELIEF = 150;      // mm
-const int PER_VIEW = 200;               // new points
+const double RANGE = 1500, RELIEF = 150;        // mm
+const double REACH_ALONG = 1100, REACH_ACROSS = 900;    // mm, from the camera to what it may see
 const double SIGMA = 0.3;               // px
 const double BAR = 500, BAR_SIGMA = 0.1;        // lengths, one at each twentieth view
 const Size IMAGE(1280, 1024);
@@ -42,10 +42,19 @@ double priorSigma(const String& name)
     return name.find("outer") == 0 ? 5e-4 : name.find("index") == 0 ? 1e-3 : 0;
 }
 
+//! A camera's way, and its points: so many on the floor around each place of a view.
+struct Way
+{
+    double step, across;    // mm, from view to view, and from line to line
+    int points;
+};
+const Way STRIP = { 110, 1000, 200 }, LINES = { 320, 450, 170 };
+
 //! Which one to make.
 struct Strip
 {
-    int views;
+    Way way;
+    int views, lines;
     double wrong;           // part of the observations
     unsigned seed, startSeed;
     bool hasWindow;
@@ -126,51 +135,109 @@ Ptr<RefractiveCamera> makeCamera(bool hasWindow, std::mt19937_64* off, Mat& cova
     return camera;
 }
 
-Survey makeSurvey(const Strip& strip)
+//! Places of views, and around them those that points are at: more on each side, as a camera sees so far.
+struct Grid
 {
-    const int views = strip.views;
-    std::mt19937_64 engine(strip.seed);
-    std::uniform_real_distribution<double> part(0, 1);
-    std::normal_distribution<double> noise(0, SIGMA);
-    Survey survey;
-    Mat unused;
-    survey.camera = makeCamera(strip.hasWindow, nullptr, unused);
-    const double length = STEP*views + 700;
-    const int count = PER_VIEW*views;
-    for (int i = 0; i < count; i++)
-        survey.points.push_back(Point3d(length*(i + part(engine))/count - 350, WIDTH*(part(engine) - 0.5), RELIEF*(part(engine) - 0.5)));
-    for (int view = 6; view < views; view += 20)        // within the strip, where seven or eight images see it
+    explicit Grid(const Strip& strip)
+        : way(strip.way), lines(strip.lines), along(strip.views/strip.lines), beside((int)std::ceil(350/way.step)),
+          wide(lines > 1) {}
+    int rows() const { return lines + 2*wide; }
+    int columns() const { return along + 2*beside; }
+    //! Lines are flown to and fro.
+    Point2d placeOf(int view) const
     {
-        const int a = PER_VIEW*view + PER_VIEW/2;
+        const int line = view/along, i = view % along;
+        return Point2d(way.step*(line % 2 ? along - 1 - i : i), way.across*line);
+    }
+    //! The first point at a place; outside: at the nearest.
+    int pointAt(double x, double y) const
+    {
+        const int column = std::min(std::max(cvRound(x/way.step) + beside, 0), columns() - 1);
+        const int row = std::min(std::max(cvRound(y/way.across) + wide, 0), rows() - 1);
+        return (row*columns() + column)*way.points;
+    }
+
+    const Way way;
+    const int lines, along, beside, wide;
+};
+
+std::vector<Point3d> makePoints(const Grid& grid, std::mt19937_64& engine)
+{
+    std::uniform_real_distribution<double> part(-0.5, 0.5);
+    std::vector<Point3d> points;
+    for (int row = 0; row < grid.rows(); row++)
+        for (int column = 0; column < grid.columns(); column++)
+            for (int k = 0; k < grid.way.points; k++)
+                points.push_back(Point3d(grid.way.step*(column - grid.beside + part(engine)),
+                                         grid.way.across*(row - grid.wide + part(engine)), RELIEF*part(engine)));
+    return points;
+}
+
+//! From points within the strip, where most images see them.
+void addLengths(const Grid& grid, int views, std::mt19937_64& engine, Survey& survey)
+{
+    std::normal_distribution<double> noise(0, BAR_SIGMA);
+    for (int view = 6; view < views; view += 20)
+    {
+        const Point2d place = grid.placeOf(view);
+        const int a = grid.pointAt(place.x, place.y);
         const bool isOdd = view % 40 > 20;
         const Vec3d along(isOdd ? 0.6 : 0.8, isOdd ? 0.8 : -0.6, 0);
         Point3d& end = survey.points[a + 1];
-        end = survey.points[a] + Point3d(BAR*along*(survey.points[a].y*along[1] > 0 ? -1 : 1));
-        survey.lengths.push_back(Vec4d(a, a + 1, BAR + BAR_SIGMA/SIGMA*noise(engine), BAR_SIGMA));
+        end = survey.points[a] + Point3d(BAR*along*((survey.points[a].y - place.y)*along[1] > 0 ? -1 : 1));
+        survey.lengths.push_back(Vec4d(a, a + 1, BAR + noise(engine), BAR_SIGMA));
     }
-    for (int view = 0; view < views; view++)
+}
+
+//! Of some points, which follow each other from the first.
+void observe(const Strip& strip, int view, int first, int count, std::mt19937_64& engine, Survey& survey)
+{
+    std::uniform_real_distribution<double> part(0, 1);
+    std::normal_distribution<double> noise(0, SIGMA);
+    const std::vector<Point3d> some(survey.points.begin() + first, survey.points.begin() + first + count);
+    std::vector<Point2d> pixels;
+    std::vector<uchar> status;
+    refractiveProjectPoints(some, survey.rvecs[view], survey.tvecs[view], survey.camera, pixels, status);
+    for (size_t k = 0; k < pixels.size(); k++)
     {
-        const Vec3d rvec = randomVector(engine, 0.05), centre = Vec3d(STEP*view, 0, -RANGE) + randomVector(engine, 30);
+        const Point2d pixel = pixels[k];
+        if (status[k] != REFRACT_OK || !(pixel.x > 0 && pixel.y > 0 && pixel.x < IMAGE.width && pixel.y < IMAGE.height))
+            continue;
+        const bool isWrong = part(engine) < strip.wrong;
+        const Vec2d off = isWrong ? 20*Vec2d(part(engine) - 0.5, part(engine) - 0.5) : Vec2d(noise(engine), noise(engine));
+        survey.observations.push_back(Vec3i(view, 0, first + (int)k));
+        survey.pixels.push_back(pixel + Point2d(off));
+        survey.isWrong.push_back(isWrong);
+    }
+}
+
+Survey makeSurvey(const Strip& strip)
+{
+    std::mt19937_64 engine(strip.seed);
+    const Grid grid(strip);
+    const Way& way = strip.way;
+    Survey survey;
+    Mat unused;
+    survey.camera = makeCamera(strip.hasWindow, nullptr, unused);
+    survey.points = makePoints(grid, engine);
+    addLengths(grid, strip.views, engine, survey);
+    for (int view = 0; view < grid.along*grid.lines; view++)
+    {
+        const Point2d place = grid.placeOf(view);
+        const Vec3d rvec = randomVector(engine, 0.05), centre = Vec3d(place.x, place.y, -RANGE) + randomVector(engine, 30);
         Matx33d R;
         Rodrigues(rvec, R);
         survey.rvecs.push_back(rvec);
         survey.tvecs.push_back(-(R*centre));
-        const int near = (int)(PER_VIEW*1100/STEP), middle = (int)((STEP*view + 350)/length*count);
-        const int begin = std::max(0, middle - near), end = std::min(count, middle + near);
-        const std::vector<Point3d> some(survey.points.begin() + begin, survey.points.begin() + end);
-        std::vector<Point2d> pixels;
-        std::vector<uchar> status;
-        refractiveProjectPoints(some, rvec, survey.tvecs.back(), survey.camera, pixels, status);
-        for (size_t k = 0; k < pixels.size(); k++)
+        const int reach = strip.lines > 1 ? (int)std::ceil(REACH_ACROSS/way.across) : 0;
+        int before = -1;
+        for (int line = -reach; line <= reach; line++)
         {
-            const Point2d pixel = pixels[k];
-            if (status[k] != REFRACT_OK || !(pixel.x > 0 && pixel.y > 0 && pixel.x < IMAGE.width && pixel.y < IMAGE.height))
-                continue;
-            const bool isWrong = part(engine) < strip.wrong;
-            const Vec2d off = isWrong ? 20*Vec2d(part(engine) - 0.5, part(engine) - 0.5) : Vec2d(noise(engine), noise(engine));
-            survey.observations.push_back(Vec3i(view, 0, begin + (int)k));
-            survey.pixels.push_back(pixel + Point2d(off));
-            survey.isWrong.push_back(isWrong);
+            const int first = grid.pointAt(place.x - REACH_ALONG, place.y + line*way.across);
+            const int last = grid.pointAt(place.x + REACH_ALONG, place.y + line*way.across) + way.points;
+            if (first != before)        // else it is beyond the last line
+                observe(strip, view, first, last - first, engine, survey);
+            before = first;
         }
     }
     return survey;
@@ -263,19 +330,34 @@ double cameraOverStated(const Survey& survey, const Found& found)
     return std::sqrt(sum/count);
 }
 
-//! @return seconds
-double run(int views, double wrong, double secondsBefore, int viewsBefore)
+//! A strip, or an area as long as it is wide.
+Strip stripOf(int views, bool isArea, double wrong)
 {
-    const Strip strip = { views, wrong, (unsigned)views, 7, true };
+    const int lines = isArea ? cvRound(std::sqrt(views*LINES.step/LINES.across)) : 1;
+    return { isArea ? LINES : STRIP, views/lines*lines, lines, wrong, (unsigned)views, 7, true };
+}
+
+//! @return seconds
+double run(const Strip& strip, double secondsBefore, int viewsBefore)
+{
+    const int views = strip.views;
+    const double wrong = strip.wrong;
     const Survey survey = makeSurvey(strip);
     const Found found = adjust(strip, survey);
-    size_t lost = 0, kept = 0, good = 0;        // a point that too few see to tell which of them is wrong is left out as a whole
+    // A point that too few see to tell which of them is wrong is left out as a whole. What is wrong by less than the noise pulls its
+    // point away from the others.
+    std::vector<uchar> isPulled(survey.points.size(), 0);
+    size_t lost[2] = { 0, 0 }, good[2] = { 0, 0 }, kept = 0;
+    for (size_t i = 0; i < survey.isWrong.size(); i++)
+        if (survey.isWrong[i] && found.inliers[i])
+            isPulled[survey.observations[i][2]] = 1;
     for (size_t i = 0; i < survey.isWrong.size(); i++)
     {
-        if (!std::isfinite(found.points[survey.observations[i][2]].x))
+        const int point = survey.observations[i][2];
+        if (!std::isfinite(found.points[point].x))
             continue;
-        good += !survey.isWrong[i];
-        lost += !survey.isWrong[i] && !found.inliers[i];
+        good[isPulled[point]] += !survey.isWrong[i];
+        lost[isPulled[point]] += !survey.isWrong[i] && !found.inliers[i];
         kept += survey.isWrong[i] && found.inliers[i];
     }
     rusage usage;
@@ -284,7 +366,7 @@ double run(int views, double wrong, double secondsBefore, int viewsBefore)
                 usage.ru_maxrss/1024, found.rms, posesOverStated(survey, found), pointsOverStated(survey, found),
                 cameraOverStated(survey, found));
     if (wrong > 0)
-        std::printf("%11.0f%11.1e%11zu", 100*wrong, (double)lost/(double)good, kept);
+        std::printf("%11.0f%11zu%11.1e%11.1e", 100*wrong, kept, (double)lost[0]/(double)good[0], (double)lost[1]/(double)good[1]);
     else if (viewsBefore > 0)
         std::printf("%11.2f", std::log(found.cpu/secondsBefore)/std::log((double)views/viewsBefore));
     std::printf("\n");
@@ -305,7 +387,7 @@ void runMany(int views, int strips, bool hasWindow)
     for (int i = 0; i < strips; i++)
     {
         const unsigned seed = 1000u*(i + 1) + views;
-        const Strip strip = { views, 0, seed, seed + 7, hasWindow };
+        const Strip strip = { STRIP, views, 1, 0, seed, seed + 7, hasWindow };
         const Survey survey = makeSurvey(strip);
         const Found found = adjust(strip, survey);
         poses += std::pow(posesOverStated(survey, found), 2)/strips;
@@ -328,22 +410,24 @@ void printManySurveys(int views, int strips)
         runMany(views, strips, hasWindow);
 }
 
-void printSurveys(int least, int most)
+void printSurveys(int least, int most, bool isArea)
 {
-    std::printf("a strip through a flat port in water, lens and window within their priors; poses, points, camera: error/sigma\n");
+    std::printf("%s through a flat port in water, lens and window within their priors; poses, points, camera: error/sigma\n",
+                isArea ? "lines side by side" : "a strip");
     printHead("    views^x");
     double seconds = 0;
     int before = 0;
     for (int views : { 20, 60, 100, 300, 1000, 3000, 6000 })
         if (views >= least && views <= most)
         {
-            seconds = run(views, 0, seconds, before);
-            before = views;
+            const Strip strip = stripOf(views, isArea, 0);
+            seconds = run(strip, seconds, before);
+            before = strip.views;
         }
-    printHead("    wrong, %  good lost wrong kept");
+    printHead("    wrong, % wrong kept  good lost of others");
     for (int views : { 20, 100, 300, 1000 })
         if (views >= least && views <= most)
-            run(views, 0.1, 0, 0);
+            run(stripOf(views, isArea, 0.1), 0, 0);
 }
 
 } // namespace bench

@@ -8,8 +8,9 @@ namespace bench {
 
 /** Table of strips of images of a sea floor through a flat port, adjusted from lists of observations: time, memory, how the time grows
 with the views, errors of poses and points against the truth in their stated standard deviations.
-@param least views of the shortest strip, @param most of the longest */
-void printSurveys(int least, int most);
+@param least views of the shortest strip, @param most of the longest
+@param isArea lines side by side in place of a strip */
+void printSurveys(int least, int most, bool isArea);
 
 /** Errors against the truth over stated of as many strips with other seeds, through the port and without a window. */
 void printManySurveys(int views, int strips);
