@@ -6,6 +6,7 @@
 millionth of the information that the views next to each other have, and any damping that is seen by it makes them creep. */
 
 #include "adjust/damped_steps.hpp"
+#include <opencv2/core/utils/logger.hpp>
 
 namespace cv { namespace refract {
 
@@ -55,6 +56,7 @@ void DampedSteps::run(ReducedCost& cost)
             continue;
         }
         const double gain = cost.optimize() ? squares - cost.squaredError() : -std::numeric_limits<double>::infinity();
+        CV_LOG_DEBUG(NULL, "refract: squares " << squares << ", damping " << damping << ", gain " << gain << " of " << foretold);
         isConverged = damping <= WEAK && std::abs(gain) <= change*squares;
         if (gain > 1e-3*foretold || (isConverged && gain >= 0))
         {

@@ -338,6 +338,8 @@ FitOutcome Minimization::run(const TermCriteria& criteria, double& damping, doub
         damping = 1/regions[0].radius;
         const bool isHeldAnew = region.outcome != ceres::FAILURE && isOnBound() && holdAtBounds();
         iterations_ += region.iterations;
+        CV_LOG_DEBUG(NULL, "refract: " << (turn ? "dogleg" : "Levenberg-Marquardt") << " to " << problem_.squaredError() << ", step left "
+                     << (cost_ ? newtonDecrement(cost_->information()) : NAN) << " px, " << region.iterations << " iterations");
         left -= region.iterations;
         if (region.outcome == ceres::CONVERGENCE && !isHeldAnew && (region.leastGain > 0 || isAtMinimum()))
             return FitOutcome();

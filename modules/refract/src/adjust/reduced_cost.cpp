@@ -21,7 +21,7 @@ ReducedCost::ReducedCost(Problem& problem)
     for (int block : variable_)
         cameras_ += problem.blocks()[block].kind != ParameterBlock::POSE;
     if (problem.hasScene())
-        tree_ = treeOfViews(problem);
+        graph_.reset(new ViewGraph(problem));
 }
 
 //! The problem to the state; false if it is there already.
@@ -160,7 +160,7 @@ bool ReducedCost::linearize()
     for (int block : variable_)
         anchor->values.push_back(problem_.blocks()[block].values);
     if (problem_.hasScene())
-        anchor->motion.reset(new ViewMotion(problem_, tree_));
+        anchor->motion.reset(new ViewMotion(problem_, *graph_));
     anchor_ = std::move(anchor);
     isAnchor_ = true;
     return true;

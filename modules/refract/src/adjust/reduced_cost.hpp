@@ -76,7 +76,7 @@ private:
     Problem& problem_;
     std::vector<int> variable_;
     int cameras_;                       //!< of these the first ones; the others are poses
-    std::vector<ViewEdge> tree_;        //!< of a scene's views
+    std::unique_ptr<const ViewGraph> graph_;     //!< of a scene's views
     std::vector<double*> state_;
     std::unique_ptr<Anchor> anchor_;
     bool isPossible_;                   //!< there is a cost where it was asked for last

@@ -27,8 +27,7 @@ std::vector<std::vector<int> > viewsOfPoints(const Problem& problem)
     return all;
 }
 
-//! Of each view: with which others it shares points, and how many. Of a point's views only those that follow each other count: a tree asks
-//! no more.
+//! Of each view: with which others it shares points, and how many. Of a point's views only those that follow each other count.
 std::vector<std::map<int, int> > sharedPoints(const Problem& problem)
 {
     std::vector<std::map<int, int> > shared(problem.viewCount());
@@ -81,11 +80,16 @@ Vector6 joined(const Vec3d& rotation, const Vec3d& translation)
 
 } // namespace
 
+ViewGraph::ViewGraph(const Problem& problem) : isRoot(problem.viewCount(), true)
+{
+    growTree(problem);
+    factor();
+}
+
 //! It grows by the view that shares most points with one that it has (Prim).
-std::vector<ViewEdge> treeOfViews(const Problem& problem)
+void ViewGraph::growTree(const Problem& problem)
 {
     const std::vector<std::map<int, int> > shared = sharedPoints(problem);
-    std::vector<ViewEdge> tree;
     std::vector<bool> isReached(shared.size(), false);
     typedef std::pair<int, std::pair<int, int> > Candidate;         // how many points; -from, -to: the first of equals
     std::priority_queue<Candidate> next;
@@ -93,8 +97,12 @@ std::vector<ViewEdge> treeOfViews(const Problem& problem)
     {
         isReached[view] = true;
         for (const std::pair<const int, int>& other : shared[view])
+        {
             if (!isReached[other.first])
                 next.push({ other.second, { -view, -other.first } });
+            if (view < other.first)
+                edges.push_back({ view, other.first, other.second });
+        }
     };
     for (int view = 0; view < (int)shared.size(); view++)
         if (!problem.isAdjusted(view))
@@ -105,19 +113,65 @@ std::vector<ViewEdge> treeOfViews(const Problem& problem)
             reach(root);
         while (!next.empty())
         {
-            const ViewEdge edge = { -next.top().second.first, -next.top().second.second };
+            const ViewEdge edge = { -next.top().second.first, -next.top().second.second, next.top().first };
             next.pop();
             if (isReached[edge.to])
                 continue;
             tree.push_back(edge);
+            isRoot[edge.to] = false;
             reach(edge.to);
         }
     }
-    return tree;
 }
 
-ViewMotion::ViewMotion(const Problem& problem, const std::vector<ViewEdge>& tree)
-    : tree_(tree), isRoot_(problem.viewCount(), true), sceneScale_(problem.sceneScale())
+void ViewGraph::factor()
+{
+    BlockGraph graph(isRoot.size());
+    for (const ViewEdge& edge : edges)
+    {
+        graph[edge.from].push_back(edge.to);
+        graph[edge.to].push_back(edge.from);
+    }
+    laplacian_ = BlockCholesky(graph);
+    const auto column = [&](int view) -> BlockCholesky::Column& { return laplacian_.column(laplacian_.at(view)); };
+    for (size_t view = 0; view < isRoot.size(); view++)
+        if (isRoot[view])
+            column((int)view).diagonal.setIdentity();       // and nothing beside it: its correction is 0
+    for (const ViewEdge& edge : edges)
+    {
+        for (int view : { edge.from, edge.to })
+            if (!isRoot[view])
+                column(view).diagonal.diagonal().array() += edge.shared;
+        if (isRoot[edge.from] || isRoot[edge.to])
+            continue;
+        const bool isInOrder = laplacian_.at(edge.from) < laplacian_.at(edge.to);
+        BlockCholesky::Column& first = column(isInOrder ? edge.from : edge.to);
+        const int row = laplacian_.at(isInOrder ? edge.to : edge.from);
+        first.blocks[std::lower_bound(first.rows.begin(), first.rows.end(), row) - first.rows.begin()].diagonal().array() -= edge.shared;
+    }
+    laplacian_.factor(laplacian_.diagonal().cwiseSqrt(), DBL_EPSILON);
+}
+
+std::vector<Vector6> ViewGraph::corrections(const std::vector<Vector6>& off) const
+{
+    Eigen::MatrixXd all = Eigen::MatrixXd::Zero(6*isRoot.size(), 1);
+    for (size_t i = 0; i < edges.size(); i++)
+    {
+        const ViewEdge& edge = edges[i];
+        if (!isRoot[edge.from])
+            all.block<6, 1>(6*edge.from, 0) += edge.shared*off[i];
+        if (!isRoot[edge.to])
+            all.block<6, 1>(6*edge.to, 0) -= edge.shared*off[i];
+    }
+    laplacian_.solveL(all);
+    laplacian_.solveTranspose(all);
+    std::vector<Vector6> corrections;
+    for (size_t view = 0; view < isRoot.size(); view++)
+        corrections.push_back(all.block<6, 1>(6*view, 0));
+    return corrections;
+}
+
+ViewMotion::ViewMotion(const Problem& problem, const ViewGraph& graph) : graph_(graph), sceneScale_(problem.sceneScale())
 {
     const std::vector<Vec3d> middles = middlesOfViews(problem);
     for (int view = 0; view < problem.viewCount(); view++)
@@ -131,8 +185,35 @@ ViewMotion::ViewMotion(const Problem& problem, const std::vector<ViewEdge>& tree
         const Vec3d middle = sceneScale_*middles[view];
         views_.push_back(View{ rotation, Vec3d(pose), Vec3d(pose + 3), turnByRvec, middle, Vec3d(), Vec3d(), Matx33d::eye(), middle });
     }
-    for (const ViewEdge& edge : tree_)
-        isRoot_[edge.to] = false;
+}
+
+//! Of the middles of two views, to first order, in a frame that has turned as they have.
+static Vec3d turnedBetween(const Vec3d& between, const Vec3d& fromTurn, const Vec3d& toTurn)
+{
+    return between - 0.5*(fromTurn + toTurn).cross(between);
+}
+
+//! As the tree has turned them, and then the middles with the frames between them, each edge is off by what its way round makes.
+void ViewMotion::closeEdges()
+{
+    std::vector<Vector6> off;
+    for (const ViewEdge& edge : graph_.edges)
+    {
+        const View &from = views_[edge.from], &to = views_[edge.to];
+        off.push_back(joined(rotationVector(rotationMatrix(from.turn - to.turn)*from.turned.t()*to.turned), Vec3d()));
+    }
+    std::vector<Vector6> corrections = graph_.corrections(off);
+    for (size_t i = 0; i < views_.size(); i++)
+        views_[i].turned = views_[i].turned*rotationMatrix(Vec3d(corrections[i].data()));
+    for (size_t i = 0; i < off.size(); i++)
+    {
+        const View &from = views_[graph_.edges[i].from], &to = views_[graph_.edges[i].to];
+        const Vec3d between = turnedBetween(to.middle - from.middle, from.turn, to.turn) + to.way - from.way;
+        off[i] = joined(Vec3d(), to.moved - from.moved - 0.5*(from.turned + to.turned)*between);
+    }
+    corrections = graph_.corrections(off);
+    for (size_t i = 0; i < views_.size(); i++)
+        views_[i].moved += Vec3d(corrections[i].data() + 3);
 }
 
 std::vector<Vector6> ViewMotion::posesAfter(const std::vector<Vector6>& steps)
@@ -146,14 +227,15 @@ std::vector<Vector6> ViewMotion::posesAfter(const std::vector<Vector6>& steps)
         view.turned = rotationMatrix(view.turn);
         view.moved = view.middle + view.way;
     }
-    for (const ViewEdge& edge : tree_)
+    for (const ViewEdge& edge : graph_.tree)
     {
         const View& from = views_[edge.from];
         View& to = views_[edge.to];
-        const Vec3d between = to.middle - from.middle;
+        const Vec3d between = turnedBetween(to.middle - from.middle, from.turn, to.turn) + to.way - from.way;
         to.turned = from.turned*rotationMatrix(to.turn - from.turn);
-        to.moved = from.moved + 0.5*(from.turned + to.turned)*(between + to.way - from.way - 0.5*(from.turn + to.turn).cross(between));
+        to.moved = from.moved + 0.5*(from.turned + to.turned)*between;
     }
+    closeEdges();
     std::vector<Vector6> poses;
     for (size_t i = 0; i < views_.size(); i++)
     {
@@ -165,6 +247,37 @@ std::vector<Vector6> ViewMotion::posesAfter(const std::vector<Vector6>& steps)
     return poses;
 }
 
+//! What edges say of turns and ways is linear in these: along the tree, then as all edges together have it.
+void ViewMotion::findTurnsAndWays()
+{
+    const auto turnBetween = [&](const ViewEdge& edge)
+    { return rotationVector(views_[edge.from].turned.t()*views_[edge.to].turned); };
+    const auto wayBetween = [&](const ViewEdge& edge)
+    {
+        const View &from = views_[edge.from], &to = views_[edge.to];
+        return Vec3d((0.5*(from.turned + to.turned)).solve(to.moved - from.moved, DECOMP_LU))
+               - turnedBetween(to.middle - from.middle, from.turn, to.turn);
+    };
+    std::vector<Vector6> off;
+    for (const ViewEdge& edge : graph_.tree)
+        views_[edge.to].turn = views_[edge.from].turn + turnBetween(edge);
+    for (const ViewEdge& edge : graph_.edges)
+        off.push_back(joined(views_[edge.to].turn - views_[edge.from].turn - turnBetween(edge), Vec3d()));
+    std::vector<Vector6> corrections = graph_.corrections(off);
+    for (size_t i = 0; i < views_.size(); i++)
+        views_[i].turn += Vec3d(corrections[i].data());
+    for (const ViewEdge& edge : graph_.tree)
+        views_[edge.to].way = views_[edge.from].way + wayBetween(edge);
+    for (size_t i = 0; i < off.size(); i++)
+    {
+        const ViewEdge& edge = graph_.edges[i];
+        off[i] = joined(Vec3d(), views_[edge.to].way - views_[edge.from].way - wayBetween(edge));
+    }
+    corrections = graph_.corrections(off);
+    for (size_t i = 0; i < views_.size(); i++)
+        views_[i].way += Vec3d(corrections[i].data() + 3);
+}
+
 std::vector<Vector6> ViewMotion::stepsTo(const std::vector<Vector6>& poses)
 {
     for (size_t i = 0; i < views_.size(); i++)
@@ -173,20 +286,10 @@ std::vector<Vector6> ViewMotion::stepsTo(const std::vector<Vector6>& poses)
         const Matx33d R = rotationMatrix(Vec3d(poses[i].data()));
         view.turned = R.t()*view.rotation.R;
         view.moved = R.t()*(view.rotation.R*view.middle + view.tvec - Vec3d(poses[i].data() + 3));
-        if (!isRoot_[i])
-            continue;
-        view.turn = rotationVector(view.turned);
+        view.turn = rotationVector(view.turned);        // of roots: of the others it follows
         view.way = view.moved - view.middle;
     }
-    for (const ViewEdge& edge : tree_)
-    {
-        const View& from = views_[edge.from];
-        View& to = views_[edge.to];
-        const Vec3d between = to.middle - from.middle;
-        to.turn = from.turn + rotationVector(from.turned.t()*to.turned);
-        to.way = from.way + Vec3d((0.5*(from.turned + to.turned)).solve(to.moved - from.moved, DECOMP_LU)) - between
-                 + 0.5*(from.turn + to.turn).cross(between);
-    }
+    findTurnsAndWays();
     std::vector<Vector6> steps;
     for (const View& view : views_)
     {

@@ -5,6 +5,7 @@
 #ifndef OPENCV_REFRACT_VIEW_MOTION_HPP
 #define OPENCV_REFRACT_VIEW_MOTION_HPP
 
+#include "adjust/block_cholesky.hpp"
 #include "adjust/problem.hpp"
 #include "math/rotation.hpp"
 
@@ -14,25 +15,47 @@ namespace cv { namespace refract {
 struct ViewEdge
 {
     int from, to;
+    int shared = 0;             //!< points
 };
 
-/** A spanning tree of the views that see a point in common with others, from those that do not move, or from any: each edge is from one
-that was reached before. */
-std::vector<ViewEdge> treeOfViews(const Problem& problem);
+//! Which views see the same.
+class ViewGraph
+{
+public:
+    explicit ViewGraph(const Problem& problem);
+    /** A spanning tree, from the views that do not move, or from any: each edge is from a view that was reached before, to the one that
+    shares most points with one of these. */
+    std::vector<ViewEdge> tree;
+    //! Those of the tree and others: of a point's views those that follow each other.
+    std::vector<ViewEdge> edges;
+    //! The tree does not lead to it: it does not move, or others move with it.
+    std::vector<bool> isRoot;
+
+    /** What each view has to be corrected by, so that what edges are off by is as little as may be (least squares, by shared points):
+    a path that leads back to where it came from is off, as turns do not commute. Roots stay.
+    @param off of each edge: what its second view has more than it should have beside the first */
+    std::vector<Vector6> corrections(const std::vector<Vector6>& off) const;
+
+private:
+    void growTree(const Problem& problem);
+    void factor();
+    BlockCholesky laplacian_;   //!< factored
+};
 
 /** How the views of a scene move by a step that is not small: the retraction of their poses. To first order it is a step of rvec and t.
 
 A view turns about the middle of what it sees, so that one that is hardly tied to its points goes round them. What a step changes between
-two views is small, and is made in their own frame as it has turned: from view to view along a tree. So where a long strip bends by
-degrees, all that is near to each other keeps its places; straight lines of the poses would tear it apart. Poses and steps: rvec, t; one
-a view. */
+two views is small, and is made in their own frame as it has turned: from view to view along a tree, then as all edges together have it.
+So where a long strip or an area bends by degrees, all that is near to each other keeps its places; straight lines of the poses would tear
+it apart. Poses and steps: rvec, t; one a view. */
 class ViewMotion
 {
 public:
-    //! From where the problem is.
-    ViewMotion(const Problem& problem, const std::vector<ViewEdge>& tree);
+    //! From where the problem is. @param graph outlives it
+    ViewMotion(const Problem& problem, const ViewGraph& graph);
 
     std::vector<Vector6> posesAfter(const std::vector<Vector6>& steps);
+    //! The inverse, to second order, where edges lead back to where they came from; else as it is.
     std::vector<Vector6> stepsTo(const std::vector<Vector6>& poses);
     //! Moves the points of a cluster in the frame of a view that sees each, as the last motion turned it. @param change to first order
     void movePoints(const Problem& problem, int cluster, const Eigen::VectorXd& change, Eigen::Ref<Eigen::VectorXd> points) const;
@@ -49,8 +72,9 @@ private:
         Matx33d turned;         //!< of the scene
         Vec3d moved;            //!< the middle
     };
-    std::vector<ViewEdge> tree_;
-    std::vector<bool> isRoot_;
+    void closeEdges();
+    void findTurnsAndWays();
+    const ViewGraph& graph_;
     std::vector<View> views_;
     double sceneScale_;         //!< scene's units -> those of t, of middles and ways
 };
