@@ -97,9 +97,9 @@ Options optionsOf(int argc, char** argv)
             throw std::runtime_error("there is no option " + argument + ", see --help");
     }
     const Options o = { parser.has("quick"), parser.has("growth"), parser.has("bundles"), parser.has("lines"),
-                        parser.get<std::string>("only"), parser.get<std::string>("isa"), parser.get<int>("points"), parser.get<int>("rounds"),
-                        parser.get<int>("surveys"), parser.get<int>("surveys-from"), parser.get<int>("strips"), parser.get<int>("views"),
-                        parser.get<int>("arrays") };
+                        parser.get<std::string>("only"), parser.get<std::string>("isa"), parser.get<int>("points"),
+                        parser.get<int>("rounds"), parser.get<int>("surveys"), parser.get<int>("surveys-from"), parser.get<int>("strips"),
+                        parser.get<int>("views"), parser.get<int>("arrays") };
     if (!parser.check() || o.points < 1 || o.rounds < 1 || o.views < 7 || (o.isa != "baseline" && o.isa != "avx2" && o.isa != "avx512"))
         throw std::runtime_error("--points and --rounds are numbers from 1 on, --views from 7, --isa is baseline, avx2 or avx512");
     return o;

@@ -22,7 +22,8 @@ std::unique_ptr<Problem> makeRows(Random& random, double turned, double roll, in
     const RigTruth truth = makeRig(1, { 0 }, 1.333);
     BundleScene scene;
     for (int i = 0; i < 120*rows; i++)
-        scene.points.push_back({ 10.*(i % 120) + random.uniform(0, 9), random.uniform(-60, 60 + BETWEEN*(rows - 1)), random.uniform(-30, 30) });
+        scene.points.push_back({ 10.*(i % 120) + random.uniform(0, 9), random.uniform(-60, 60 + BETWEEN*(rows - 1)),
+                                 random.uniform(-30, 30) });
     for (int view = 0; view < VIEWS*rows; view++)
     {
         const int row = view/VIEWS, along = row % 2 ? VIEWS - 1 - view % VIEWS : view % VIEWS;

@@ -104,6 +104,14 @@ void BlockCholesky::findFill(const BlockGraph& graph)
     }
 }
 
+size_t BlockCholesky::bytes() const
+{
+    size_t blocks = columns_.size();
+    for (const Column& column : columns_)
+        blocks += column.rows.size();
+    return blocks*(sizeof(Block) + sizeof(int));
+}
+
 VectorXd BlockCholesky::diagonal() const
 {
     VectorXd all(SIZE*count());
@@ -197,9 +205,9 @@ void BlockCholesky::solveTranspose(Eigen::Ref<MatrixXd> X) const
 }
 
 //! With Y = L below the diagonal, times the diagonal's inverse: Z = -Z' Y below it, D^-T D^-1 - Y^T Z on it; Z' is right of it.
-BlockInverse::BlockInverse(const BlockCholesky& factor) : inverse_(factor)
+BlockInverse::BlockInverse(BlockCholesky factor) : inverse_(std::move(factor))
 {
-    for (int k = factor.count() - 1; k >= 0; k--)
+    for (int k = inverse_.count() - 1; k >= 0; k--)
     {
         BlockCholesky::Column& column = inverse_.column(k);
         const int count = (int)column.rows.size();

@@ -39,6 +39,7 @@ public:
     const Column& column(int place) const { return columns_[place]; }
     Column& column(int place) { return columns_[place]; }
 
+    size_t bytes() const;
     //! Of each row.
     Eigen::VectorXd diagonal() const;
     /** Factors. What is left of a row's diagonal below this part of its squared effect is rounding: its row and column are 0.
@@ -66,7 +67,7 @@ class BlockInverse
 public:
     typedef BlockCholesky::Block Block;
     BlockInverse() {}
-    explicit BlockInverse(const BlockCholesky& factor);
+    explicit BlockInverse(BlockCholesky factor);
     //! Throws where the factor is 0.
     Block operator()(int a, int b) const;
 

@@ -80,7 +80,7 @@ private:
 
 //! Those of all observations that are asked for, and of the inner block itself.
 std::vector<int> columnsOf(const InnerBlock& block, const std::vector<Observation>& observations,
-                           const std::vector<std::unique_ptr<ImageRows> >& images, const std::vector<std::vector<double> >& weights)
+                           const PassingRows& images, const std::vector<std::vector<double> >& weights)
 {
     std::vector<int> columns = block.columns;
     int last = -1;
@@ -88,7 +88,7 @@ std::vector<int> columnsOf(const InnerBlock& block, const std::vector<Observatio
         if (weights[o.image][o.row] > 0 && o.image != last)
         {
             last = o.image;
-            columns.insert(columns.end(), images[last]->columns.begin(), images[last]->columns.end());
+            columns.insert(columns.end(), images[last].columns.begin(), images[last].columns.end());
         }
     std::sort(columns.begin(), columns.end());
     columns.erase(std::unique(columns.begin(), columns.end()), columns.end());
@@ -121,41 +121,43 @@ std::vector<Observation> observationsOf(const Problem& problem, int inner)
 
 std::vector<std::vector<DeletionResidual> > deletionResiduals(const Problem& problem, const Masks& isInlier, const Masks& isAsked)
 {
-    const Information information = informationOf(problem, false);
-    const OuterCovariance outer(information, pseudoInverseRoot(information));
+    Information information = informationOf(problem, false);
+    information.equations.reset();
+    OuterCovariance outer(information, pseudoInverseRoot(information));
+    outer.invertPoses(std::move(information.poses.factor));
     const FreeSpace space(problem, false);
     const std::vector<std::vector<double> > weights = weightsOfAsked(problem, isAsked);
-    const int count = (int)problem.images().size();
-    std::vector<std::unique_ptr<ImageRows> > images(count);
-    std::vector<std::vector<DeletionResidual> > all(count);
-    parallel_for_(Range(0, count), [&](const Range& range)
+    std::vector<std::vector<DeletionResidual> > all;
+    for (const std::vector<double>& ofImage : weights)
+        all.push_back(std::vector<DeletionResidual>(ofImage.size()));
+    PassingRows images(problem, space, &weights);
+    const auto predict = [&](int inner)
     {
-        for (int i = range.start; i < range.end; i++)
+        const std::vector<Observation> observations = observationsOf(problem, inner);
+        const std::vector<int> columns = columnsOf(information.inner[inner], observations, images, weights);
+        const InnerPrediction prediction(information.inner[inner], columns, outer);
+        for (const Observation& o : observations)
         {
-            images[i].reset(new ImageRows(problem, space, i, weights[i]));
-            all[i].resize(weights[i].size());
+            if (weights[o.image][o.row] == 0)
+                continue;
+            const ImageRows& image = images[o.image];
+            const int at = problem.hasScene() ? 3*problem.scene().placeInCluster(problem.images()[o.image].points.index[o.row]) : 0;
+            all[o.image][o.row] = DeletionResidual(Vec2d(image.residuals[2*o.row], image.residuals[2*o.row + 1]),
+                                                   prediction(image, o.row, at), isInlier[o.image][o.row] != 0,
+                                                   problem.images()[o.image].points.rowsOf(o.row));
         }
-    });
-    parallel_for_(Range(0, (int)information.inner.size()), [&](const Range& range)
+    };
+    const int MANY = 4096, count = (int)information.inner.size();      // at a time
+    for (int begin = 0; begin < count; begin += MANY)
     {
-        for (int inner = range.start; inner < range.end; inner++)
+        const int end = std::min(begin + MANY, count);
+        images.moveTo(begin, end);
+        parallel_for_(Range(begin, end), [&](const Range& range)
         {
-            const std::vector<Observation> observations = observationsOf(problem, inner);
-            const std::vector<int> columns = columnsOf(information.inner[inner], observations, images, weights);
-            const InnerPrediction prediction(information.inner[inner], columns, outer);
-            for (const Observation& o : observations)
-            {
-                if (weights[o.image][o.row] == 0)
-                    continue;
-                const ImageRows& image = *images[o.image];
-                const int at = problem.hasScene() ?
-                    3*problem.scene().placeInCluster(problem.images()[o.image].points.index[o.row]) : 0;
-                all[o.image][o.row] = DeletionResidual(Vec2d(image.residuals[2*o.row], image.residuals[2*o.row + 1]),
-                                                       prediction(image, o.row, at), isInlier[o.image][o.row] != 0,
-                                                       problem.images()[o.image].points.rowsOf(o.row));
-            }
-        }
-    });
+            for (int inner = range.start; inner < range.end; inner++)
+                predict(inner);
+        });
+    }
     return all;
 }
 

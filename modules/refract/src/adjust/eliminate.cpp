@@ -12,8 +12,7 @@ using Eigen::VectorXd;
 Information informationOf(const Problem& problem, bool withHeld)
 {
     const FreeSpace space(problem, withHeld);
-    const std::vector<ImageRows> images = linearize(problem, space);
-    return problem.hasScene() ? eliminatePoints(problem, space, images) : eliminatePoses(problem, space, images);
+    return problem.hasScene() ? eliminatePoints(problem, space) : eliminatePoses(problem, space, linearize(problem, space));
 }
 
 //! Columns of the root scaled to their effect: the parameters' sizes differ by orders.

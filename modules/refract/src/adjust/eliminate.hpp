@@ -55,7 +55,7 @@ void setInner(const PivotedQR& qr, const Eigen::VectorXd& scale, const Eigen::Ma
 //! By orthogonal transformations of each view's rows.
 Information eliminatePoses(const Problem& problem, const FreeSpace& space, const std::vector<ImageRows>& images);
 //! By Schur's complement of the normal equations.
-Information eliminatePoints(const Problem& problem, const FreeSpace& space, const std::vector<ImageRows>& images);
+Information eliminatePoints(const Problem& problem, const FreeSpace& space);
 //! The one of both that the problem asks for.
 Information informationOf(const Problem& problem, bool withHeld = true);
 

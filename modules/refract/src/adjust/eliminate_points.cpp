@@ -53,7 +53,8 @@ BlockGraph graphOf(const Problem& problem, const FreeSpace& space)
     return graph;
 }
 
-void addImages(const std::vector<ImageRows>& images, NormalEquations& equations)
+//! @param squares of each column, in and out
+void addImages(const PassingRows& rows, const std::vector<int>& images, NormalEquations& equations, VectorXd& squares)
 {
     std::vector<MatrixXd> products(images.size());
     std::vector<VectorXd> gradients(images.size());
@@ -61,16 +62,22 @@ void addImages(const std::vector<ImageRows>& images, NormalEquations& equations)
     {
         for (int i = range.start; i < range.end; i++)
         {
-            const int count = (int)images[i].columns.size();
+            const ImageRows& image = rows[images[i]];
+            const int count = (int)image.columns.size();
             products[i] = MatrixXd::Zero(count, count);
             if (count == 0)         // Eigen has no products of nothing
                 continue;
-            addGram(images[i].outer, 1, products[i]);
-            gradients[i] = transposeTimesVector(images[i].outer, images[i].residuals);
+            addGram(image.outer, 1, products[i]);
+            gradients[i] = transposeTimesVector(image.outer, image.residuals);
         }
     });
     for (size_t i = 0; i < images.size(); i++)
-        equations.add(products[i], gradients[i], images[i].columns);
+    {
+        const std::vector<int>& columns = rows[images[i]].columns;
+        equations.add(products[i], gradients[i], columns);
+        for (size_t k = 0; k < columns.size(); k++)
+            squares[columns[k]] += products[i](k, k);
+    }
 }
 
 void addPrior(const MatrixXd& rows, const VectorXd& residual, int first, NormalEquations& equations)
@@ -139,7 +146,7 @@ MatrixXd inverseRoot(const MatrixXd& A, bool& isRegular)
     return roots.asDiagonal()*eigen.vectors.transpose()*scale.asDiagonal();
 }
 
-std::vector<int> columnsOf(const Problem& problem, int cluster, const std::vector<ImageRows>& images)
+std::vector<int> columnsOf(const Problem& problem, int cluster, const PassingRows& images)
 {
     std::vector<int> columns;
     int last = -1;
@@ -161,7 +168,7 @@ std::vector<int> columnsOf(const Problem& problem, int cluster, const std::vecto
 }
 
 /** @param place of each column among those of the cluster: room for it */
-EliminatedCluster eliminate(const Problem& problem, int index, const std::vector<ImageRows>& images, std::vector<int>& place)
+EliminatedCluster eliminate(const Problem& problem, int index, const PassingRows& images, std::vector<int>& place)
 {
     const Cluster& cluster = problem.scene().clusters()[index];
     EliminatedCluster result;
@@ -324,13 +331,13 @@ VectorXd dampedStep(const Information& information, double damping, double& gain
     return step;
 }
 
-Information eliminatePoints(const Problem& problem, const FreeSpace& space, const std::vector<ImageRows>& images)
+Information eliminatePoints(const Problem& problem, const FreeSpace& space)
 {
     NormalEquations equations(space.cameraCount(), graphOf(problem, space));
-    addImages(images, equations);
     addPriors(problem, space, equations);
+    VectorXd squares = equations.diagonal();
+    PassingRows images(problem, space);
     Information information;
-    information.effect = equations.diagonal().cwiseSqrt();
     information.rounding = std::sqrt(ROUNDING);
     const int count = (int)problem.scene().clusters().size();
     information.inner.resize(count);
@@ -338,6 +345,7 @@ Information eliminatePoints(const Problem& problem, const FreeSpace& space, cons
     for (int begin = 0; begin < count; begin += MANY)
     {
         std::vector<EliminatedCluster> some(std::min(MANY, count - begin));
+        addImages(images, images.moveTo(begin, begin + (int)some.size()), equations, squares);
         parallel_for_(Range(0, (int)some.size()), [&](const Range& range)
         {
             std::vector<int> place(space.count);
@@ -352,6 +360,7 @@ Information eliminatePoints(const Problem& problem, const FreeSpace& space, cons
             information.inner[begin + i] = std::move(some[i].points);
         }
     }
+    information.effect = squares.cwiseSqrt();
     RootOfEquations root(equations, information.effect, ROUNDING);
     information.root = std::move(root.ofCameras);
     information.residual = std::move(root.residual);

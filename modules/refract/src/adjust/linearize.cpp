@@ -76,6 +76,41 @@ std::vector<ImageRows> linearize(const Problem& problem, const FreeSpace& space)
     return all;
 }
 
+PassingRows::PassingRows(const Problem& problem, const FreeSpace& space, const std::vector<std::vector<double> >* rootWeights)
+    : problem_(problem), space_(space), rootWeights_(rootWeights), first_(problem.images().size(), std::numeric_limits<int>::max()),
+      last_(problem.images().size(), -1), rows_(problem.images().size())
+{
+    for (int cluster = 0; problem.hasScene() && cluster < (int)problem.scene().clusters().size(); cluster++)
+        for (const Observation& o : problem.observationsOf(cluster))
+        {
+            first_[o.image] = std::min(first_[o.image], cluster);
+            last_[o.image] = cluster;
+        }
+    for (size_t i = 0; i < rows_.size() && !problem.hasScene(); i++)
+        first_[i] = last_[i] = problem.images()[i].view;
+}
+
+std::vector<int> PassingRows::moveTo(int begin, int end)
+{
+    std::vector<int> added;
+    for (int i = 0; i < (int)rows_.size(); i++)
+    {
+        if (last_[i] < begin)
+            rows_[i].reset();
+        else if (first_[i] < end && !rows_[i])
+            added.push_back(i);
+    }
+    parallel_for_(Range(0, (int)added.size()), [&](const Range& range)
+    {
+        for (int k = range.start; k < range.end; k++)
+        {
+            const int i = added[k];
+            rows_[i].reset(new ImageRows(problem_, space_, i, rootWeights_ ? (*rootWeights_)[i] : problem_.images()[i].rootWeights));
+        }
+    });
+    return added;
+}
+
 Eigen::MatrixXd rigPriorRows(const Problem& problem, const FreeSpace& space)
 {
     const Eigen::MatrixXd byValues = problem.rigPriorRows();

@@ -6,6 +6,7 @@
 #define OPENCV_REFRACT_LINEARIZE_HPP
 
 #include "adjust/problem.hpp"
+#include <memory>
 
 namespace cv { namespace refract {
 
@@ -43,6 +44,26 @@ struct ImageRows
 
 //! Of all images, with their own weights.
 std::vector<ImageRows> linearize(const Problem& problem, const FreeSpace& space);
+
+/** The same while inner blocks (clusters of a scene's points, views of targets) are gone through: an image has rows from the first block
+that it shows to the last. Where points are listed as images show them, these are few images at a time. */
+class PassingRows
+{
+public:
+    //! @param rootWeights in place of the images' own; outlive it; null: their own
+    PassingRows(const Problem& problem, const FreeSpace& space, const std::vector<std::vector<double> >* rootWeights = nullptr);
+    //! To inner blocks begin ... end - 1; begin ascends. @return the images that are new; they ascend
+    std::vector<int> moveTo(int begin, int end);
+    //! One that these blocks show.
+    const ImageRows& operator[](int image) const { return *rows_[image]; }
+
+private:
+    const Problem& problem_;
+    const FreeSpace& space_;
+    const std::vector<std::vector<double> >* const rootWeights_;
+    std::vector<int> first_, last_;                     //!< inner block of each image; beyond all: it shows none
+    std::vector<std::unique_ptr<ImageRows> > rows_;
+};
 
 //! What is known of all cameras together, by the free coordinates of their blocks, which come first.
 Eigen::MatrixXd rigPriorRows(const Problem& problem, const FreeSpace& space);

@@ -11,7 +11,7 @@ using Eigen::MatrixXd;
 static const int SIZE = BlockCholesky::SIZE;
 
 OuterCovariance::OuterCovariance(const Information& information, const MatrixXd& ofCameras)
-    : cameras_((int)ofCameras.rows()), ofPoses_(information.poses.factor)
+    : cameras_((int)ofCameras.rows())
 {
     const ScenePoses& poses = information.poses;
     const int ofPoses = SIZE*poses.factor.count();

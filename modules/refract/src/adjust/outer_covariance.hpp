@@ -20,12 +20,14 @@ public:
     OuterCovariance() {}
     //! @param ofCameras H
     OuterCovariance(const Information& information, const Eigen::MatrixXd& ofCameras);
+    //! For of(). @param factor L; its memory is used
+    void invertPoses(BlockCholesky factor) { ofPoses_ = BlockInverse(std::move(factor)); }
 
     //! H, and below it G.
     const Eigen::MatrixXd& half() const { return half_; }
     void setHalf(const Eigen::MatrixXd& half);
-    /** S of some columns of the free space, which ascend; of a pose all six. Any two poses must be of views that show a point of one
-    cluster. */
+    /** Once poses are inverted: S of some columns of the free space, which ascend; of a pose all six. Any two poses must be of views that
+    show a point of one cluster. */
     Eigen::MatrixXd of(const std::vector<int>& columns) const;
 
 private:
