@@ -14,6 +14,7 @@
 #include "console/file_output.hpp"
 #include "console/outputs.hpp"
 #include "console/table.hpp"
+#include "console/view_names.hpp"
 #include "formats/point_table.hpp"
 #include "target/detected_images.hpp"
 
@@ -67,7 +68,7 @@ namespace fs = std::filesystem;
 
 struct Options
 {
-    std::string calibration, points, plane, out;
+    std::string calibration, viewPattern, points, plane, out;
     std::vector<std::string> images;            //!< of each camera; empty: it took none
     std::vector<std::string> compareWith;
     TargetOptions target;
@@ -137,6 +138,7 @@ std::vector<MeasuredView> readImages(const Options& options, const Calibration& 
     RigSources sources;
     sources.channel = calibration.channel;
     sources.yFrom = options.origin.yFrom;
+    sources.viewPattern = options.viewPattern;
     PerCamera<cv::Size> sizes;
     std::copy(options.images.begin(), options.images.end(), sources.glass.begin());
     for (size_t c = 0; c < calibration.cameras.size(); c++)
@@ -466,6 +468,7 @@ void addOptions(OptionParser& parser, Options& options)
 {
     parser.add("calib.yml", options.calibration, "what refract_calib wrote").required();
     parser.add("IMAGE", options.images, "of camera 1, of camera 2, ...");
+    addViewPattern(parser, options.viewPattern);
     parser.add("--points", options.points, "image points that are no target, in place of images: id,u1,v1,u2,v2,...");
     options.target.addTo(parser, false);
     options.target.addDotsTo(parser);

@@ -11,6 +11,7 @@
 #include "console/outputs.hpp"
 #include "console/progress.hpp"
 #include "console/table.hpp"
+#include "console/view_names.hpp"
 #include "stereo/checked_stereo.hpp"
 #include "stereo/cloud_file.hpp"
 #include "stereo/depth_comparison.hpp"
@@ -66,7 +67,8 @@ const int PAIRS_SEARCHED = 5;
 
 struct Options
 {
-    std::string calibration, left, right, depth, out, depthMap, picture, rectifiedFolder, folder, truth, matcher = "3way", channels;
+    std::string calibration, left, right, viewPattern, depth, out, depthMap, picture, rectifiedFolder, folder, truth, channels;
+    std::string matcher = "3way";
     MatcherOptions matching;
     double maxRowError = 0;             // 0: none is set
     bool ascii = false, noWindow = false, crop = false;
@@ -311,6 +313,7 @@ void addOptions(OptionParser& parser, Options& options)
     parser.add("calib.yml", options.calibration, "of a stereo pair, what refract_calib wrote").required();
     parser.add("LEFT", options.left, "of camera 1: image, quoted glob, numbered images, video").required();
     parser.add("RIGHT", options.right, "of camera 2, of the same moments").required();
+    addViewPattern(parser, options.viewPattern);
     parser.add("--depth", options.depth, "NEAR,FAR: range of z in the frame of camera 1; FAR may be inf (default: found in "
                "the images)");
     parser.add("--out", options.out, "cloud of points to write, .ply");
@@ -349,7 +352,7 @@ int refract_stereo_main(int argc, char** argv)
         if (!options.channels.empty())
             parseChannels(options.channels);
         const Calibration rig = readPair(options, command);
-        Frames first(options.left), second(options.right);
+        Frames first(options.left, options.viewPattern), second(options.right, options.viewPattern);
         const FramePairs frames = pairsOf(first, second);
         const std::vector<PairFiles> files = filesOf(options, frames.pairs);
         refuseOverwriting(options, command.settings(), first, second, files);

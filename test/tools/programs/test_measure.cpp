@@ -111,6 +111,26 @@ TEST_CASE("refract_measure pairs the images of two globs by their stems and comp
     CHECK(mentions(result.err, "--pixel-sigma"));
 }
 
+TEST_CASE("Where names have more than the moment, --view-pattern says where it stands", "[tools][measure][stereo]")
+{
+    const TemporaryFolder f;
+    for (int c : {1, 2})
+        for (int m : {1, 2, 3})
+            std::filesystem::copy_file(cv::format("%s/measure%d/z600_%d.jpg", STEREO.c_str(), c, m),
+                                       f / cv::format("%c_z%d_%d.jpg", 'k' + c, m, 10*m + 7*c));
+    const std::string both = " '" + f / "l_*.jpg' '" + f / "m_*.jpg'", measure = "refract_measure " + STEREO + "/truth.yml" + both + TARGET;
+    CHECK(runTool(measure).code == 1);
+    CHECK(mentions(runTool(measure + " --view-pattern='x{}'").err, "has no name of this form"));
+    const ToolResult measured = runTool(measure + " --view-pattern='*_z{}_*' --out=" + f / "points.csv");
+    CAPTURE(measured.out, measured.err);
+    CHECK(measured.code == 0);
+    CHECK(readPointsCsv(readFile(f / "points.csv")).size() == 90);
+
+    const std::string stereo = "refract_stereo " + STEREO + "/truth.yml" + both + " --depth=500,700 --out-dir=" + f / "clouds";
+    CHECK(mentions(runTool(stereo).err, "images of one moment need equal names"));
+    CHECK(mentions(runTool(stereo + " --view-pattern='x{}'").err, "has no name of this form"));
+}
+
 TEST_CASE("refract_measure meets a known plane, and finds a target's pose, with one camera", "[tools][measure]")
 {
     const TemporaryFolder folder;

@@ -113,7 +113,7 @@ CheckImages readScene(const CheckOptions& o, const Calibration& calibration, con
     for (size_t c = 0; c < sources.size(); c++)
         if (sources[c].empty())
             throw Failure("there is no --scene" + cameraSuffix((int)c) + ": give images of each camera, in the calibration's order");
-    std::vector<Frames> cameras = framesOf(sources, calibration, o.calibration);
+    std::vector<Frames> cameras = framesOf(sources, calibration, o.calibration, o.images.viewPattern);
     CheckImages result;
     for (const Frames& frames : cameras)
         if (frames.isVideo())
