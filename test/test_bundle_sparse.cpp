@@ -50,13 +50,14 @@ struct ListCall
         return refractiveBundleAdjust(observations, pixels, call.cameras, call.windows, call.Rs, call.Ts, call.rvecs, call.tvecs,
                                       call.points, call.lengths, call.deviations, call.covariance, viewCovariances,
                                       call.pointDeviations, call.perViewErrors, inliers, flags, call.poseCovariances,
-                                      TermCriteria(3, 1000, 1e-12), noArray(), pixelCovariances, rigCovariance);
+                                      TermCriteria(3, 1000, 1e-12), noArray(), pixelCovariances, rigCovariance, 0, memory);
     }
 
     BundleCall call;
     std::vector<Vec3i> observations;
     std::vector<Point2d> pixels;
     Mat pixelCovariances, rigCovariance;
+    double memory = 0;
     std::vector<Mat> viewCovariances;
     std::vector<uchar> inliers;
 };
@@ -206,6 +207,8 @@ TEST_CASE("What is wrong with a list is said", "[bundle][sparse]")
     CHECK_THAT(fault([](ListCall& l) { l.pixels.pop_back(); }), Contains("imagePoints has 159 pixels, but observations has 160 rows"));
     CHECK_THAT(fault([](ListCall& l) { l.observations.clear(); }), Contains("observations is empty"));
     CHECK_THAT(fault([](ListCall& l) { l.call.cameras.clear(); }), Contains("cameras is empty"));
+    CHECK_THAT(fault([](ListCall& l) { l.memory = -1; }), Contains("covarianceMemory is -1"));
+    CHECK_THAT(fault([](ListCall& l) { l.memory = NaN; }), Contains("covarianceMemory is nan"));
     CHECK_THAT(fault([](ListCall& l) { l.pixelCovariances = Mat::ones(3, 3, CV_64F); }), Contains("pixelCovariances"));
     CHECK_THAT(fault([](ListCall& l) { for (Point2d& p : l.pixels) p = Point2d(NaN, NaN); }), Contains("has no point that was seen"));
     // A view of two points has no pose, and is named.
@@ -225,6 +228,47 @@ TEST_CASE("What is wrong with a list is said", "[bundle][sparse]")
     CHECK(run() > 0);
     rows.at<Vec3d>(2)[2] = 1.5;
     CHECK_THAT(thrown(run), Contains("observations[2] is of point 1.5"));
+}
+
+TEST_CASE("Without memory for the views' covariances points have those of known views", "[bundle][sparse]")
+{
+    CAPTURE(seed());
+    Random random(49);
+    const RigTruth truth = makeRig(1, { 0 }, 1.333);
+    const BundleScene scene = makeStrip(truth, 9, random, 0.1);
+    const BundleCall start(truth, scene, random);
+    ListCall all(start), enough(start), little(start);
+    all.run(0);
+    enough.memory = 1e9;
+    enough.run(0);
+    little.memory = 1000;
+    little.run(0);
+    CHECK(largestDifference(Mat(little.call.points), Mat(all.call.points)) == 0);
+    CHECK(largestDifference(little.call.covariance, all.call.covariance) == 0);
+    CHECK(largestDifference(enough.call.pointDeviations, all.call.pointDeviations) == 0);
+    CHECK(countNonZero(little.viewCovariances[0]) == 0);        // the scene's frame
+    for (int view = 1; view < 9; view++)
+    {
+        CHECK(largestDifference(enough.viewCovariances[view], all.viewCovariances[view]) == 0);
+        CHECK(countNonZero(little.viewCovariances[view] == little.viewCovariances[view]) == 0);         // NaN
+    }
+    // The same where cameras and views are known. The noise follows from the residuals, of fewer unknowns.
+    ListCall known(little);
+    known.memory = 0;
+    const double rms = known.run(GLASS_FIX_NORMAL | GLASS_USE_POSES);
+    CHECK(rms == Approx(all.run(0)).epsilon(1e-3));
+    double noise = 0;
+    for (int i = 0; i < little.call.pointDeviations.rows; i++)
+        for (int k = 0; k < 3; k++)
+        {
+            const double own = little.call.pointDeviations.at<double>(i, k), other = known.call.pointDeviations.at<double>(i, k);
+            if (!std::isfinite(own))
+                continue;
+            noise = noise > 0 ? noise : own/other;
+            CHECK(own == Approx(noise*other).epsilon(1e-3));
+            CHECK(own < all.call.pointDeviations.at<double>(i, k));
+        }
+    CHECK(noise == Approx(1).epsilon(0.2));
 }
 
 TEST_CASE("Poses and points of a strip are as uncertain as the whole inverse says", "[bundle][sparse]")

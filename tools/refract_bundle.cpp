@@ -64,7 +64,8 @@ each camera of calib.yml, say by names which images are whose (not needed for on
 scale: of --lengths (id1,id2 are POINT3D_ID), of --positions (image,x,y,z,std: where camera 1 was; the results are then in this frame), of
 the rig's base line, or of the window alone; its +- says how well. --colmap-out: the model with its refined poses and points, raw pixels,
 and for cameras the nearest pinholes, for refract_undistort --colmap. --points-out: id,x,y,z,sx,sy,sz,images,angle_deg,status of each point;
-those whose rays are nearly parallel have their large +-. --poses-out: the same of each view.
+those whose rays are nearly parallel have their large +-. --poses-out: the same of each view. --memory: GB that these +- may take; above it
+those of points are for known cameras and views, and too small, and views have none (nan).
 
 Exit code: 0 done, 1 could not do it, 2 done and written, but a limit is not met, or what start.yml knows is contradicted.)";
 
@@ -116,6 +117,8 @@ void addOptions(OptionParser& parser, Options& o)
     parser.add("--points-out", o.pointsOut, "points.csv to write");
     parser.add("--images", o.survey.images, "names of a camera's images in the model, a glob; once for each camera").oneAtATime()
         .needs(colmap);
+    parser.add("--memory", o.survey.memory, "GB that the +- of views and points may take beside the fit (default: what they need); above "
+        "it, +- of points are for known cameras and views, which is said").needs(colmap).check(moreThanZero());
     parser.add("--positions", o.survey.positions, "where camera 1 was: image,x,y,z,std").needs(colmap);
     parser.add("--colmap-out", o.colmapOut, "folder for the refined model, made if it is not there").needs(colmap);
     parser.add("--poses-out", o.posesOut, "poses.csv to write: of each view, with +-").needs(colmap);

@@ -263,6 +263,35 @@ TEST_CASE("A bent model of COLMAP becomes points and poses within their +-", "[t
     CHECK(ofPoses.value() < 1.25);
 }
 
+TEST_CASE("Above --memory the +- of points are for known views, and it is said", "[tools][bundle][colmap]")
+{
+    Network network(710);
+    const TemporaryFolder f;
+    network.write(f);
+    const auto stds = [&](const std::string& option) {
+        const ToolResult result = survey(f, "--lengths=" + f / "lengths.csv" + option);
+        CAPTURE(result.out, result.err);
+        REQUIRE(result.code == 0);
+        const bool isSaid = mentions(result.out, "not found (--memory)") && mentions(result.out, "if views were known");
+        CHECK(isSaid == (option == " --memory=1e-6"));
+        const nlohmann::json json = nlohmann::json::parse(readFile(f / "summary.json"));
+        CHECK(json["points_in_known_views"] == isSaid);
+        CHECK(json["scale_std"].is_null() == isSaid);
+        for (const auto& row : tableOf(f / "poses.csv"))
+            CHECK((std::isnan(row.second[15]) || row.second[15] == 0) == (isSaid || row.first == "left/000.png"));
+        std::vector<double> all;
+        for (const auto& row : tableOf(f / "points.csv"))
+            if (row.second[8] == 0)
+                all.push_back(row.second[3]);
+        return all;
+    };
+    const std::vector<double> all = stds(""), enough = stds(" --memory=1"), alone = stds(" --memory=1e-6");
+    CHECK(enough == all);
+    REQUIRE(alone.size() == all.size());
+    for (size_t i = 0; i < all.size(); i++)
+        CHECK(alone[i] < all[i]);
+}
+
 TEST_CASE("Lengths, a base line or the window tell the scale of a model", "[tools][bundle][colmap]")
 {
     for (const std::string by : {"lengths", "base line", "window"})

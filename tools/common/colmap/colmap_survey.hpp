@@ -15,6 +15,7 @@ struct SurveyOptions
     std::vector<std::string> images;            //!< globs of names, one a camera; none: see surveyOf()
     std::string lengths, positions;             //!< files; may be empty
     bool robust = true;
+    double memory = 0.;                         //!< GB that +- of poses and points may take; 0: any
     double pixelSigma = 0., maxRms = 0.;        //!< px; 0: not known, no limit
 };
 

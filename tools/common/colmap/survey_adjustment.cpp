@@ -29,8 +29,8 @@ std::vector<Mat> arraysOf(const std::vector<Vec3d>& vectors)
 }
 
 //! What is known of positions holds near these poses; adjusted again from there it holds where they are.
-void adjust(const Survey& survey, const BundleStart& bundle, const SurveyStart& start, bool robust, SurveyAdjustment& result,
-            std::vector<Point3d>& points, Mat& deviations)
+void adjust(const Survey& survey, const BundleStart& bundle, const SurveyStart& start, bool robust, double memory,
+            SurveyAdjustment& result, std::vector<Point3d>& points, Mat& deviations)
 {
     Fit& fit = result.bundle.fit;
     std::vector<Mat> Rs, Ts;
@@ -48,7 +48,7 @@ void adjust(const Survey& survey, const BundleStart& bundle, const SurveyStart& 
         fit.rms = refractiveBundleAdjust(survey.observations, survey.pixels, fit.rig.cameras, fit.rig.windows, Rs, Ts, rvecs, tvecs, points,
                                          start.lengths.rows(), fit.stdDeviations, fit.covariance, result.viewCovariances, deviations,
                                          errors, result.used, flags, known, criteria, noArray(), noArray(), bundle.covariance,
-                                         start.lengths.commonStd());
+                                         start.lengths.commonStd(), 1e9*memory);
     };
     adjusted([&] {
         try
@@ -257,7 +257,8 @@ Matx33d SurveyAdjustment::centreCovariance(int view) const
     return J*Matx66d(viewCovariances[view].ptr<double>())*J.t();
 }
 
-SurveyAdjustment adjustSurvey(const Survey& survey, const BundleStart& bundle, const SurveyStart& start, bool robust, bool quiet)
+SurveyAdjustment adjustSurvey(const Survey& survey, const BundleStart& bundle, const SurveyStart& start, bool robust, double memory,
+                              bool quiet)
 {
     SurveyAdjustment result;
     result.bundle.fit.rig = bundle.rig.clone();
@@ -271,11 +272,13 @@ SurveyAdjustment adjustSurvey(const Survey& survey, const BundleStart& bundle, c
     {
         progress.at(format("%zu views, %zu points, %zu observations", survey.views.size(), points.size(), survey.observations.size()));
         result.bundle.fit.rig = bundle.rig.clone();     // what is known of it is known of these values
-        adjust(survey, bundle, start, robust, result, points, deviations);
+        adjust(survey, bundle, start, robust, memory, result, points, deviations);
         if (round + 1 < rounds)
             restartLost(start, points, result);
         progress.step();
     }
+    for (size_t view = 0; view < result.rvecs.size(); view++)
+        result.arePointsAlone |= result.hasPose((int)view) && std::isnan(result.viewCovariances[view].at<double>(0, 0));
     loseDoubtfulViews(survey, result);
     setPoints(survey, points, deviations, result);
     const double squares = setErrors(survey, result);

@@ -14,12 +14,14 @@ struct SurveyAdjustment
 {
     BundleAdjustment bundle;                    //!< its points are those of the model; less the start's origin
     std::vector<cv::Vec3d> rvecs, tvecs;        //!< scene -> camera 1, of each view; NaN: most of its observations are wrong
-    std::vector<cv::Mat> viewCovariances;       //!< 6x6 each; 0: it is the frame
+    std::vector<cv::Mat> viewCovariances;       //!< 6x6 each; 0: it is the frame; NaN: not found, for want of memory
+    bool arePointsAlone = false;                //!< then +- of points are those of known cameras and views
     std::vector<uchar> used;                    //!< of each observation
     std::vector<double> errors;                 //!< of each observation, px: where it was seen from where it is projected; NaN: no point
     std::vector<int> images;                    //!< of each point: how many observations are used
     std::vector<double> angles;                 //!< of each point: the largest between its rays, degrees
-    double scaleStd = 0.;                       //!< relative, of the distance known best between two places of the rig; or by positions
+    double scaleStd = 0.;                       //!< relative, of the distance known best between two places of the rig, or by positions;
+                                                //!< infinite: not known
     std::vector<char> isVague;                  //!< of each point: its +- is more than a tenth of its distance
     int largeErrors = 0;                        //!< how many are
 
@@ -30,8 +32,10 @@ struct SurveyAdjustment
     cv::Matx33d centreCovariance(int view) const;
 };
 
-//! Throws Failure that says what the images do not determine, or why there is no answer.
-SurveyAdjustment adjustSurvey(const Survey& survey, const BundleStart& bundle, const SurveyStart& start, bool robust, bool quiet);
+/** Throws Failure that says what the images do not determine, or why there is no answer.
+@param memory GB that +- of views and points may take; 0: any */
+SurveyAdjustment adjustSurvey(const Survey& survey, const BundleStart& bundle, const SurveyStart& start, bool robust, double memory,
+                              bool quiet);
 
 } // namespace tools
 

@@ -163,7 +163,7 @@ std::vector<NearestPinhole> pinholesOf(const Survey& survey, const SurveyAdjustm
 
 std::string scaleText(const SurveyStart& start, const SurveyAdjustment& adjustment)
 {
-    return start.scale + format(", +- %.2g %%", 100.*adjustment.scaleStd);
+    return start.scale + (std::isfinite(adjustment.scaleStd) ? format(", +- %.2g %%", 100.*adjustment.scaleStd) : "");
 }
 
 std::string originText(const SurveyStart& start)
@@ -243,6 +243,7 @@ std::string surveyJson(const SurveyResult& result, const std::string& command)
 {
     Json json = adjustmentJson(result.adjustment.bundle, result.findings, command, result.unit);
     json.set("scale_std", result.adjustment.scaleStd);
+    json.set("points_in_known_views", result.adjustment.arePointsAlone);
     json.set("colmap_origin", std::vector<double>(result.start.origin.val, result.start.origin.val + 3));
     json.set("images", result.survey.imageCount());
     json.set("images_left_out", result.survey.leftOut);
@@ -270,9 +271,12 @@ void printSurvey(std::ostream& out, const SurveyResult& result)
         out << "the model for COLMAP is less the origin " << originText(result.start) << "\n";
     printCorrections(out, result.findings, result.unit);
     const Vec3d places = medianPlaceStd(adjustment), points = medianStd(adjustment.bundle.sigma);
-    out << format("%d images, x, y, z +- %.2g, %.2g, %.2g (median)\n", result.survey.imageCount(), places[0], places[1], places[2]);
+    out << format("%d images, x, y, z +- ", result.survey.imageCount())
+        << (adjustment.arePointsAlone ? "not found (--memory)\n"
+                                      : format("%.2g, %.2g, %.2g (median)\n", places[0], places[1], places[2]));
     out << format("%d of %zu points, x, y, z +- %.2g, %.2g, %.2g (median)", adjustment.bundle.answers(), adjustment.bundle.points.size(),
                   points[0], points[1], points[2])
+        << (adjustment.arePointsAlone ? " if views were known" : "")
         << (adjustment.largeErrors ? format("; %d hardly known", adjustment.largeErrors) : "") << "\n";
     const std::vector<std::string> lost = withoutAnswer(result);
     if (adjustment.bundle.usedPixels < adjustment.bundle.seenPixels)

@@ -1659,6 +1659,10 @@ where a pose is exact, NaN where the view has no observation in use.
 @param pixelCovariances the covariance of each pixel of the list, see the conventions; noArray(): all are usual ones.
 @param rigCovariance as above.
 @param lengthScaleStd as above.
+@param covarianceMemory bytes that viewCovariances and pointDeviations may take while they are found, beside what the fit itself
+takes: the inverse of the views' equations, and how each point depends on views and cameras. Above it viewCovariances are NaN,
+and pointDeviations are those of points in known cameras and views, which are too small. 0: any. stdDeviations and covariance
+are always of all.
 @return RMS reprojection error in pixels over all points that were used.
 */
 CV_EXPORTS_AS(refractiveBundleAdjustSparse) double refractiveBundleAdjust(
@@ -1671,7 +1675,7 @@ CV_EXPORTS_AS(refractiveBundleAdjustSparse) double refractiveBundleAdjust(
         OutputArray perViewErrors, OutputArray inliers, int flags = 0, InputArrayOfArrays poseCovariances = noArray(),
         TermCriteria criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 1000, 1e-12),
         InputArrayOfArrays cameraCovariances = noArray(), InputArray pixelCovariances = noArray(),
-        InputArray rigCovariance = noArray(), double lengthScaleStd = 0);
+        InputArray rigCovariance = noArray(), double lengthScaleStd = 0, double covarianceMemory = 0);
 
 /** @overload
 The short form, for a rig that does not move (a moving wand, drifting particles). Cameras, windows, Rs and Ts are initial

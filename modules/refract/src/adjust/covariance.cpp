@@ -201,6 +201,7 @@ FitOutcome Covariance::compute(const Problem& problem, double variance, int requ
         outcome = checkSigmas(parameters, half, variance);
     if (!outcome.converged())
         return outcome;
+    information_.equations.reset();     // they were what made the factor
     // What the cameras' covariance says of a weak direction so holds for poses and points.
     outer_ = OuterCovariance(information_, half);
     cameras_ = space.cameraCount();
@@ -227,9 +228,37 @@ void Covariance::widen(Problem& problem)
     setParameters();
 }
 
-//! X = (1 + e) p, with the points p in the unit of the lengths and the error e that these share.
-Mat Covariance::ofPoints() const
+size_t Covariance::bytes() const
 {
+    size_t all = information_.poses.factor.bytes();
+    for (const InnerBlock& block : information_.inner)
+        all += sizeof(double)*block.byOuter.size() + sizeof(int)*block.columns.size();
+    return all;
+}
+
+void Covariance::forgetPoses()
+{
+    poses_ = FORGOTTEN;
+    outer_ = OuterCovariance();
+    information_.poses = ScenePoses();
+    for (InnerBlock& block : information_.inner)
+    {
+        block.byOuter.resize(0, 0);
+        std::vector<int>().swap(block.columns);
+    }
+}
+
+void Covariance::invertPoses()
+{
+    if (poses_ == FACTORED)
+        outer_.invertPoses(std::move(information_.poses.factor));
+    poses_ = poses_ == FACTORED ? INVERTED : poses_;
+}
+
+//! X = (1 + e) p, with the points p in the unit of the lengths and the error e that these share.
+Mat Covariance::ofPoints()
+{
+    invertPoses();
     const std::vector<Cluster>& clusters = problem_->scene().clusters();
     const double scale = problem_->sceneScale();
     const int error = problem_->targetBlock() < 0 ? -1 : FreeSpace(*problem_).first[problem_->targetBlock()];
@@ -241,7 +270,7 @@ Mat Covariance::ofPoints() const
             const InnerBlock& block = information_.inner[i];
             VectorXd variances = scale*scale*block.half.rowwise().squaredNorm();
             MatrixXd byOuter = scale*block.byOuter;
-            if (error >= 0)
+            if (error >= 0 && poses_ == INVERTED)
                 byOuter.col(std::lower_bound(block.columns.begin(), block.columns.end(), error) - block.columns.begin()) +=
                     clusters[i].values;
             if (byOuter.size() > 0)
@@ -254,16 +283,17 @@ Mat Covariance::ofPoints() const
     return deviations;
 }
 
-std::vector<Mat> Covariance::ofPoses() const
+std::vector<Mat> Covariance::ofPoses()
 {
+    invertPoses();
     const FreeSpace space(*problem_);
     std::vector<Mat> all;
     for (int view = 0; view < problem_->viewCount(); view++)
     {
         const int block = problem_->poseBlock(view);
-        const double isSeen = problem_->pose(view).found ? 0 : std::numeric_limits<double>::quiet_NaN();
-        all.push_back(Mat(6, 6, CV_64F, Scalar(isSeen)));
-        if (space.placeOf(block) < 0)
+        const bool isAdjusted = space.placeOf(block) >= 0, isKnown = problem_->pose(view).found && (poses_ == INVERTED || !isAdjusted);
+        all.push_back(Mat(6, 6, CV_64F, Scalar(isKnown ? 0 : std::numeric_limits<double>::quiet_NaN())));
+        if (!isAdjusted || !isKnown)
             continue;
         std::vector<int> columns(6);
         std::iota(columns.begin(), columns.end(), space.first[block]);

@@ -23,15 +23,22 @@ struct Covariance
     computed of, which stays as it is. */
     void widen(Problem& problem);
 
+    //! Memory that those of poses and points take.
+    size_t bytes() const;
+    //! Which is given back: those of poses are NaN then, those of points are for known cameras and poses. Parameters have theirs.
+    void forgetPoses();
+
     Eigen::MatrixXd ofParameters;       //!< of the public parameters, P x P; 0 where fixed
-    Mat ofPoints() const;               //!< deviations of a scene's points, one row each; NaN: not in use, infinite: undetermined
-    std::vector<Mat> ofPoses() const;   //!< of a scene's views (rvec, tvec): 6x6; 0: known exactly, NaN: without an image
+    Mat ofPoints();                     //!< deviations of a scene's points, one row each; NaN: not in use, infinite: undetermined
+    std::vector<Mat> ofPoses();         //!< of a scene's views (rvec, tvec): 6x6; 0: known exactly, NaN: without an image
 
 private:
     void setParameters();
+    void invertPoses();
     const Problem* problem_ = nullptr;
     double variance_ = 0;
     Information information_;
+    enum { FACTORED, INVERTED, FORGOTTEN } poses_ = FACTORED;
     OuterCovariance outer_;             //!< for unit pixel noise
     int cameras_ = 0;                   //!< its first columns: the parameters of cameras and targets
 };

@@ -161,6 +161,7 @@ struct Knowledge
 struct Wanted
 {
     bool poseCovariances, pointDeviations;
+    double memory;              //!< bytes that both may take; 0: any
 };
 
 void writePoints(const std::vector<Point3d>& points, int depth, OutputArray out)
@@ -202,6 +203,7 @@ BundleFit adjust(const BundleImages& images, const std::vector<Point3d>& points,
     task.criteria = criteria;
     task.wantsPoseCovariances = wanted.poseCovariances;
     task.wantsPointDeviations = wanted.pointDeviations;
+    task.covarianceMemory = wanted.memory;
     task.points = points;
     const int depth = task.points.empty() ? CV_64F : points3D.depth();
     task.points.resize(images.points, Point3d(NaN, NaN, NaN));
@@ -257,7 +259,7 @@ double refractiveBundleAdjust(const std::vector<std::vector<Mat> >& imagePoints,
     const BundleImages images = denseImages(pixels, (int)cameras.size(), (int)points.size(), pixelCovariances);
     const BundleFit fit = adjust(images, points, cameras, windowOfCamera, Rs, Ts, rvecs, tvecs, points3D, lengths, flags, criteria,
                                  { poseCovariances, cameraCovariances, rigCovariance, lengthScaleStd },
-                                 { false, pointDeviations.needed() });
+                                 { false, pointDeviations.needed(), 0. });
     writeFit(fit, rvecs, tvecs, stdDeviations, covariance, perViewErrors);
     writeMat(fit.pointDeviations, pointDeviations);
     writeMasks(denseMasks(images, fit.isUsed), inliers);
@@ -271,17 +273,19 @@ double refractiveBundleAdjust(InputArray observations, InputArray imagePoints, c
                               OutputArrayOfArrays viewCovariances, OutputArray pointDeviations, OutputArray perViewErrors,
                               OutputArray inliers, int flags, InputArrayOfArrays poseCovariances, TermCriteria criteria,
                               InputArrayOfArrays cameraCovariances, InputArray pixelCovariances, InputArray rigCovariance,
-                              double lengthScaleStd)
+                              double lengthScaleStd, double covarianceMemory)
 {
     CV_INSTRUMENT_REGION();
 
     checkFlags(flags, BUNDLE_FLAGS | GLASS_USE_POSES);
+    if (!(covarianceMemory >= 0))
+        CV_Error_(Error::StsBadArg, ("covarianceMemory is %g; it must not be negative", covarianceMemory));
     const std::vector<Point3d> points = readPoints3(points3D, "points3D");
     const BundleImages images = listedImages(observations, imagePoints, (int)cameras.size(), countVectors(rvecs, "rvecs"),
                                              (int)points.size(), pixelCovariances);
     const BundleFit fit = adjust(images, points, cameras, windowOfCamera, Rs, Ts, rvecs, tvecs, points3D, lengths, flags, criteria,
                                  { poseCovariances, cameraCovariances, rigCovariance, lengthScaleStd },
-                                 { viewCovariances.needed(), pointDeviations.needed() });
+                                 { viewCovariances.needed(), pointDeviations.needed(), covarianceMemory });
     writeFit(fit, rvecs, tvecs, stdDeviations, covariance, perViewErrors);
     writeMatrices(fit.poseCovariances, viewCovariances);
     writeMat(fit.pointDeviations, pointDeviations);
@@ -302,7 +306,7 @@ double refractiveBundleAdjust(InputArrayOfArrays imagePoints, const std::vector<
     const std::vector<Point3d> points = readPoints3(points3D, "points3D");
     const BundleImages images = denseImages(pixels, (int)cameras.size(), (int)points.size(), {});
     return adjust(images, points, cameras, windowOfCamera, Rs, Ts, noArray(), noArray(), points3D, lengths, flags, criteria,
-                  { noArray(), noArray(), noArray(), 0. }, { false, false }).rms;
+                  { noArray(), noArray(), noArray(), 0. }, { false, false, 0. }).rms;
 }
 
 }} // namespace

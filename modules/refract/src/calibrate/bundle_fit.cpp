@@ -86,6 +86,8 @@ FitOutcome fitBundle(Rig& rig, const BundleTask& task, BundleFit& fit)
         covariance.widen(problem);
     const int count = problem.publicCount() - (problem.targetBlock() < 0 ? 0 : SharedTargetErrors::COUNT);
     eigen2cv(Eigen::MatrixXd(covariance.ofParameters.topLeftCorner(count, count)), fit.covariance);
+    if (task.covarianceMemory > 0 && (double)covariance.bytes() > task.covarianceMemory)
+        covariance.forgetPoses();
     if (task.wantsPoseCovariances)
         fit.poseCovariances = covariance.ofPoses();
     if (task.wantsPointDeviations)

@@ -26,6 +26,7 @@ struct BundleTask
     TermCriteria criteria;
     ScaleSources scale;
     bool wantsPoseCovariances = false, wantsPointDeviations = false;
+    double covarianceMemory = 0;                //!< bytes that these may take; 0: any
 };
 
 //! What it finds beside the cameras; a column of perViewErrors is a camera. In place of inliers: isUsed.
