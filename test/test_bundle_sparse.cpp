@@ -373,7 +373,7 @@ Effort effortOf(int views)
     REQUIRE(steps.isConverged);
     REQUIRE(cost.linearize());
     Effort effort = { steps.iterations, 0, 0 };
-    const BlockCholesky& factor = cost.information().poses.factor;
+    const BlockCholesky& factor = cost.rootedInformation().poses.factor;
     for (int place = 0; place < factor.count(); place++)
         effort.blocks += 1 + (int)factor.column(place).rows.size();
     dampedStep(cost.information(), 0, effort.gain);

@@ -9,10 +9,22 @@ namespace cv { namespace refract {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-Information informationOf(const Problem& problem, bool withHeld)
+Information informationOf(const Problem& problem, bool withHeld, bool withRoot)
 {
     const FreeSpace space(problem, withHeld);
-    return problem.hasScene() ? eliminatePoints(problem, space) : eliminatePoses(problem, space, linearize(problem, space));
+    if (!problem.hasScene())
+        return eliminatePoses(problem, space, linearize(problem, space));
+    Information information = eliminatePoints(problem, space);
+    if (withRoot)
+        findRoot(information);
+    return information;
+}
+
+bool Information::isFinite() const
+{
+    if (!equations)
+        return effect.allFinite() && root.allFinite() && residual.allFinite();
+    return effect.allFinite() && equations->ofCameras.allFinite() && equations->ofBoth.allFinite() && equations->gradient.allFinite();
 }
 
 //! Columns of the root scaled to their effect: the parameters' sizes differ by orders.

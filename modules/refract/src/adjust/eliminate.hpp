@@ -33,6 +33,8 @@ struct Information
     std::vector<InnerBlock> inner;  //!< of views, or of clusters
     ScenePoses poses;
     std::shared_ptr<const NormalEquations> equations;   //!< of a scene, its points eliminated
+    //! Else a derivative overflowed.
+    bool isFinite() const;
 };
 
 //! A view without its pose.
@@ -54,10 +56,12 @@ void setInner(const PivotedQR& qr, const Eigen::VectorXd& scale, const Eigen::Ma
 
 //! By orthogonal transformations of each view's rows.
 Information eliminatePoses(const Problem& problem, const FreeSpace& space, const std::vector<ImageRows>& images);
-//! By Schur's complement of the normal equations.
+//! By Schur's complement of the normal equations. The root is not found yet.
 Information eliminatePoints(const Problem& problem, const FreeSpace& space);
-//! The one of both that the problem asks for.
-Information informationOf(const Problem& problem, bool withHeld = true);
+//! Of a scene: the root, residual and poses, by the factor of its equations. Steps that are damped do without.
+void findRoot(Information& information);
+//! The one of both that the problem asks for, without its root if that is not asked for and comes later.
+Information informationOf(const Problem& problem, bool withHeld = true, bool withRoot = true);
 
 /** A step of a scene's outer parameters to the least squares, each damped by this part of what all images tell of it.
 @param gain by which the squares of the linearised problem are less there */

@@ -361,13 +361,17 @@ Information eliminatePoints(const Problem& problem, const FreeSpace& space)
         }
     }
     information.effect = squares.cwiseSqrt();
-    RootOfEquations root(equations, information.effect, ROUNDING);
+    information.equations = std::make_shared<NormalEquations>(std::move(equations));
+    return information;
+}
+
+void findRoot(Information& information)
+{
+    RootOfEquations root(*information.equations, information.effect, ROUNDING);
     information.root = std::move(root.ofCameras);
     information.residual = std::move(root.residual);
     information.poses = std::move(root.poses);
     information.ofInner += information.poses.residual.squaredNorm();
-    information.equations = std::make_shared<NormalEquations>(std::move(equations));
-    return information;
 }
 
 }} // namespace

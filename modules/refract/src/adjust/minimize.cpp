@@ -110,7 +110,7 @@ private:
     bool touchesTarget(int block) const;
     bool isHeldAtTarget(int block) const;
     bool retreat(int block);
-    bool isAtMinimum() const;
+    bool isAtMinimum();
     Problem& problem_;
     std::unique_ptr<ReducedCost> cost_;     //!< of what is not held
     int iterations_ = 0;
@@ -303,12 +303,12 @@ bool Minimization::holdAtBounds()
 }
 
 //! The step that is left is far below the uncertainty of what it would move, or what is not seen.
-bool Minimization::isAtMinimum() const
+bool Minimization::isAtMinimum()
 {
     const double NEGLIGIBLE = 1e-3;     // standard deviations
     const double LEAST_SIGMA = problem_.hasScene() ? 1e-3 : 1e-6;   // px: perfect data end in rounding errors
     const double variance = problem_.freedom() > 0 ? problem_.squaredError()/problem_.freedom() : 0;
-    const double decrement = newtonDecrement(cost_->information()), unseen = problem_.hasScene() ?
+    const double decrement = newtonDecrement(cost_->rootedInformation()), unseen = problem_.hasScene() ?
         DampedSteps::unseenOf(problem_.squaredError(), problem_.equationCount(), roundingOfPixels(problem_)) : 0;
     return decrement < NEGLIGIBLE*std::max(std::sqrt(variance), LEAST_SIGMA) || decrement*decrement < unseen;
 }
@@ -338,8 +338,8 @@ FitOutcome Minimization::run(const TermCriteria& criteria, double& damping, doub
         damping = 1/regions[0].radius;
         const bool isHeldAnew = region.outcome != ceres::FAILURE && isOnBound() && holdAtBounds();
         iterations_ += region.iterations;
-        CV_LOG_DEBUG(NULL, "refract: " << (turn ? "dogleg" : "Levenberg-Marquardt") << " to " << problem_.squaredError() << ", step left "
-                     << (cost_ ? newtonDecrement(cost_->information()) : NAN) << " px, " << region.iterations << " iterations");
+        CV_LOG_DEBUG(NULL, "refract: " << (turn ? "dogleg" : "Levenberg-Marquardt") << " to " << problem_.squaredError() << ", "
+                     << region.iterations << " iterations");
         left -= region.iterations;
         if (region.outcome == ceres::CONVERGENCE && !isHeldAnew && (region.leastGain > 0 || isAtMinimum()))
             return FitOutcome();

@@ -152,10 +152,8 @@ bool ReducedCost::linearize()
     if (anchor_)                    // what it predicts is used up, and as large as all else together
         std::vector<InnerBlock>().swap(anchor_->information.inner);
     std::unique_ptr<Anchor> anchor(new Anchor{ {}, nullptr, FreeSpace(problem_, false), innerValues(problem_), squaredError_,
-                                               informationOf(problem_, false) });
-    const Information& information = anchor->information;
-    if (!information.effect.allFinite() || !information.root.allFinite() || !information.residual.allFinite() ||
-        !information.poses.byCameras.allFinite() || !information.poses.residual.allFinite())
+                                               informationOf(problem_, false, false) });
+    if (!anchor->information.isFinite())
         return false;
     for (int block : variable_)
         anchor->values.push_back(problem_.blocks()[block].values);
@@ -163,13 +161,24 @@ bool ReducedCost::linearize()
         anchor->motion.reset(new ViewMotion(problem_, *graph_));
     anchor_ = std::move(anchor);
     isAnchor_ = true;
+    hasRoot_ = !problem_.hasScene();
     return true;
+}
+
+const Information& ReducedCost::rootedInformation()
+{
+    if (!hasRoot_)
+        findRoot(anchor_->information);
+    hasRoot_ = true;
+    return anchor_->information;
 }
 
 void ReducedCost::PrepareForEvaluation(bool withJacobians, bool)
 {
     isLinear_ = withJacobians;
     isPossible_ = withJacobians ? linearize() : optimize();
+    if (withJacobians && isPossible_)
+        rootedInformation();
 }
 
 //! Of a pose itself and those that are eliminated after it, and of the cameras; or of these alone.

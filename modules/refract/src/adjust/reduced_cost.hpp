@@ -46,13 +46,14 @@ public:
         const int index_;
         const std::vector<int> blocks_;
     };
-    int groupCount() const { return information().poses.factor.count() + 1; }
+    int groupCount() { return rootedInformation().poses.factor.count() + 1; }
 
     void PrepareForEvaluation(bool withJacobians, bool isNewPoint) override;
     //! At the state. False where there is no cost, or a derivative overflows.
     bool linearize();
-    //! Where it was linearised last.
+    //! Where it was linearised last; of a scene it may be without its root.
     const Information& information() const { return anchor_->information; }
+    const Information& rootedInformation();
 
 private:
     //! Where the last linearisation was made.
@@ -82,6 +83,7 @@ private:
     bool isPossible_;                   //!< there is a cost where it was asked for last
     bool isCurrent_;                    //!< the inner blocks are the best at the problem's outer ones
     bool isAnchor_;                     //!< and the anchor is there
+    bool hasRoot_ = false;              //!< what was linearised
     bool isLinear_;                     //!< residuals are asked for with their derivatives
     double squaredError_;
 };
