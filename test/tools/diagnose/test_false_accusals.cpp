@@ -14,7 +14,7 @@ using namespace mistakes;
 
 namespace {
 
-const double P0 = 0.02;             // chi^2 of one degree of freedom is then larger than PROMISING: all are known
+const double P0 = 0.02;             // below PROMISING: all are known
 const double REFUSED = 1e-4;        // of right images, at most
 
 //! The values and targets of a rig drawn again, as they are known; its windows and cameras stay where they are.

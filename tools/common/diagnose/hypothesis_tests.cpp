@@ -83,7 +83,8 @@ Trial tried(const RigData& data, const RigOptions& options, const Fit& fit, cons
         sets.push_back(cause.freed);
     const std::vector<double> gains = relaxed.gains(trial.given, sets);
     std::vector<Relaxed> found(causes.size());
-    const auto isTried = [&](size_t i) { return causes[i].posesToo || gains[i] > PROMISING; };
+    const auto isTried = [&](size_t i) {
+        return causes[i].posesToo || upperTailChiSquared((int)causes[i].freed.size(), gains[i]) < PROMISING; };
     parallel_for_(Range(0, (int)causes.size()), [&](const Range& range) {
         for (int i = range.start; i < range.end; i++)
             if (isTried(i))

@@ -24,7 +24,7 @@ struct Contradiction
 //! The one with the best fit first; others only if they fit about as well.
 std::vector<Contradiction> testGivenValues(const RigData& data, const RigOptions& options, const Fit& fit);
 
-const double PROMISING = 5.;            //!< a gain, to first order, for which a hypothesis is fitted
+const double PROMISING = 0.025;         //!< probability of its gain, to first order, if nothing is wrong: below, a hypothesis is fitted
 const double CERTAIN = 2e-9;            //!< probability, if nothing is wrong, below which a calibration is refused
 
 //! What a cause explains, set free alone: distributed as chi^2 if nothing is wrong.
