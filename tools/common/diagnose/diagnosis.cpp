@@ -194,7 +194,7 @@ std::vector<Explanation> fitted(const CalibrationInput& input, const std::vector
 {
     std::vector<Explanation> tried;
     for (size_t i = 0; i < std::min(most, mixUps.size()); i++)
-        tried.push_back({mixUps[i].sentence, medianErrorOfFit(mixUps[i].undone, input.options)});
+        tried.push_back({mixUps[i].sentence, medianErrorOfFit(mixUps[i].undone(), input.options)});
     return tried;
 }
 

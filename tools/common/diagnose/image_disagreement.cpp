@@ -8,6 +8,7 @@
 #include <opencv2/calib3d.hpp>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 using namespace cv;
 
@@ -207,6 +208,13 @@ RoughLenses roughLensesOf(const RigData& data)
     return lenses;
 }
 
+std::vector<int> allCameras(const RigData& data)
+{
+    std::vector<int> cameras(data.cameraCount);
+    std::iota(cameras.begin(), cameras.end(), 0);
+    return cameras;
+}
+
 double Disagreements::largest() const
 {
     double largest = 0.;
@@ -224,24 +232,36 @@ double Disagreements::camerasApart() const
     return worst;
 }
 
+void update(const RigData& data, const RigOptions& options, const RoughLenses& lenses, const std::vector<int>& cameras, BoardPoses& poses,
+            Disagreements& all)
+{
+    const auto isChanged = [&](int c) { return std::find(cameras.begin(), cameras.end(), c) != cameras.end(); };
+    const auto through = [&](int c) { return throughWindow(lenses.direct[c], lenses.glass[c], options); };
+    for (int c = 0; c < data.cameraCount; c++)
+    {
+        if (isChanged(c))
+        {
+            all.pairs[c] = pairsApart(data, c);
+            all.magnifications[c] = magnificationOff(lenses.direct[c], lenses.glass[c], options, data.imageSize[c]);
+        }
+        if (c == 0 || !(isChanged(0) || isChanged(c)))
+            continue;
+        const std::vector<Both> direct = boardsOf(data, c, false, lenses.direct[0], lenses.direct[c], poses),
+                                glass = boardsOf(data, c, true, through(0), through(c), poses);
+        all.direct[c - 1] = apart(direct, direct, lenses.direct[c](0, 0));
+        all.glass[c - 1] = apart(glass, glass, through(c)(0, 0));
+        all.states[c - 1] = apart(glass, direct, through(c)(0, 0));
+    }
+}
+
 Disagreements disagreementsOf(const RigData& data, const RigOptions& options, const RoughLenses& lenses, BoardPoses& poses)
 {
     Disagreements all;
-    PerCamera<Matx33d> through;
-    for (int c = 0; c < data.cameraCount; c++)
-    {
-        all.pairs.push_back(pairsApart(data, c));
-        all.magnifications.push_back(magnificationOff(lenses.direct[c], lenses.glass[c], options, data.imageSize[c]));
-        through[c] = throughWindow(lenses.direct[c], lenses.glass[c], options);
-    }
-    for (int c = 1; c < data.cameraCount; c++)
-    {
-        const std::vector<Both> direct = boardsOf(data, c, false, lenses.direct[0], lenses.direct[c], poses),
-                                glass = boardsOf(data, c, true, through[0], through[c], poses);
-        all.direct.push_back(apart(direct, direct, lenses.direct[c](0, 0)));
-        all.glass.push_back(apart(glass, glass, through[c](0, 0)));
-        all.states.push_back(apart(glass, direct, through[c](0, 0)));
-    }
+    all.pairs.resize(data.cameraCount);
+    all.magnifications.resize(data.cameraCount);
+    for (std::vector<double>* kind : {&all.direct, &all.glass, &all.states})
+        kind->resize(data.cameraCount - 1);
+    update(data, options, lenses, allCameras(data), poses, all);
     return all;
 }
 

@@ -56,6 +56,12 @@ private:
 
 Disagreements disagreementsOf(const RigData& data, const RigOptions& options, const RoughLenses& lenses, BoardPoses& poses);
 
+//! The same where images or lenses of some cameras have changed. @param all of what was before
+void update(const RigData& data, const RigOptions& options, const RoughLenses& lenses, const std::vector<int>& cameras, BoardPoses& poses,
+            Disagreements& all);
+
+std::vector<int> allCameras(const RigData& data);
+
 //! How far pairs are from one map of the direct image on that through the window, of the worst camera. A window is such a map, nearly.
 double pairsFromOneMap(const RigData& data);
 

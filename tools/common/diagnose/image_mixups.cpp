@@ -6,6 +6,7 @@
 #include "diagnose/image_disagreement.hpp"
 #include "console/table.hpp"
 #include <algorithm>
+#include <functional>
 
 using namespace cv;
 
@@ -146,6 +147,12 @@ RigData exchanged(const RigData& given, int a, int b, bool direct)
     return data;
 }
 
+bool hasImages(const RigData& data, int camera, bool direct)
+{
+    return std::any_of(data.views.begin(), data.views.end(), [&](const View& view) {
+        return direct ? view.hasDirect(camera) : view.hasGlass(camera); });
+}
+
 RigData exchangedStates(const RigData& given)
 {
     RigData data = given;
@@ -215,23 +222,29 @@ MixUps findMixUps(const CalibrationInput& input)
         return {};
     std::vector<Candidate> candidates;
     double least = NO_FIT;
-    const auto attempt = [&](const RigData& changed, const RoughLenses& now, const std::string& sentence) {
-        const Disagreements after = disagreementsOf(changed, input.options, now, poses);
+    const auto attempt = [&](const std::vector<int>& cameras, const std::function<RigData()>& undone, const RoughLenses& now,
+                             const std::string& sentence) {
+        Disagreements after = before;
+        update(undone(), input.options, now, cameras, poses, after);
         if (!isNowhereWorse(before, after))
             return;
         const double left = product(after);
-        candidates.push_back({{sentence, changed, after.camerasApart()}, left, left < CLEARLY_BETTER*product(before)});
+        candidates.push_back({{sentence, undone, after.camerasApart()}, left, left < CLEARLY_BETTER*product(before)});
         least = std::min(least, left);
     };
-    attempt(exchangedStates(data), {lenses.glass, lenses.direct}, "--direct and --glass exchanged");
+    const std::vector<int> all = allCameras(data);
+    attempt(all, [&data] { return exchangedStates(data); }, {lenses.glass, lenses.direct}, "--direct and --glass exchanged");
     for (int b = 1; b < data.cameraCount; b++)
         for (int a = 0; a < b; a++)
             for (bool direct : {false, true})
             {
+                if (!hasImages(data, a, direct) && !hasImages(data, b, direct))
+                    continue;
                 const char* const option = direct ? "--direct" : "--glass";
                 RoughLenses now = lenses;
                 direct ? std::swap(now.direct[a], now.direct[b]) : std::swap(now.glass[a], now.glass[b]);
-                attempt(exchanged(data, a, b, direct), now, option + cameraSuffix(a) + " and " + option + cameraSuffix(b) + " exchanged");
+                attempt({a, b}, [=, &data] { return exchanged(data, a, b, direct); }, now,
+                        option + cameraSuffix(a) + " and " + option + cameraSuffix(b) + " exchanged");
             }
     const auto mayBe = [&](int change, int camera) {
         return change <= MIRROR || data.imageSize[camera].width == data.imageSize[camera].height; };
@@ -239,11 +252,11 @@ MixUps findMixUps(const CalibrationInput& input)
         for (bool directToo : {false, true})
             for (int change = 0; change < CHANGES && (data.cameraCount > 1 || !directToo); change++)
                 if (mayBe(change, camera))
-                    attempt(changedBack(data, (Change)change, camera, directToo), lenses,
+                    attempt({camera}, [=, &data] { return changedBack(data, (Change)change, camera, directToo); }, lenses,
                             sentenceOf((Change)change, data, camera, directToo));
     for (int change = 0; change < CHANGES && data.cameraCount > 1; change++)
         if (mayBe(change, 0))
-            attempt(changedBack(data, (Change)change), lenses,
+            attempt(all, [=, &data] { return changedBack(data, (Change)change); }, lenses,
                     std::string("the --glass images of all cameras are ") + WORDS[change] + " to their direct images");
     std::stable_sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) { return a.left < b.left; });
     MixUps found;

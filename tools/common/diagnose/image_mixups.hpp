@@ -5,6 +5,7 @@
 #define REFRACT_TOOLS_IMAGE_MIXUPS_HPP
 
 #include "diagnose/calibration_input.hpp"
+#include <functional>
 
 /* Images that are turned, mirrored or of another camera, found without a fit, in milliseconds: each of these is undone, and it is the
 cause if then pairs show the board nearly where it was, and two cameras' boards agree on where the cameras are to each other. */
@@ -13,8 +14,8 @@ namespace tools {
 struct MixUp
 {
     std::string sentence;
-    RigData undone;             //!< the images as they should be
-    double camerasApart;        //!< then, px: see Disagreements
+    std::function<RigData()> undone;    //!< makes the images as they should be, of the input, which has to live
+    double camerasApart;                //!< then, px: see Disagreements
 };
 
 struct MixUps
