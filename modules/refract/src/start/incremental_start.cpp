@@ -198,17 +198,35 @@ void addBehind(size_t rank, const Rig& given, const std::vector<SharedWindow>& w
     addAssembled(given, cameras, windowFrom, views, flags, starts);
 }
 
+/** Whether those that tell so much of the windows alone have these where a fit of all has them: behind theirs all would come to the same.
+A camera that is the only one behind its window has no other. */
+bool isSeenAlone(size_t rank, const Minimum& minimum, const std::vector<SharedWindow>& windows, const std::vector<CameraMinima>& alone)
+{
+    const double range = meanRange(minimum.poses);
+    return minimum.converged && std::all_of(windows.begin(), windows.end(), [&](const SharedWindow& window)
+    {
+        const int c = window.members[std::min(rank, window.members.size() - 1)];
+        return rank >= window.members.size() ||
+               isSameWindow(minimum.rig.cameras[c].window(), alone[c].minima[0].camera.window(), range, SAME_ANGLE);
+    });
+}
+
 //! All cameras as they are alone, behind the window of one of those that tell most of it.
-std::vector<RigStart> assembledStarts(const Rig& given, const std::vector<CameraMinima>& alone, const RigViews& views, int flags)
+std::vector<Minimum> assembledMinima(const Rig& given, const std::vector<CameraMinima>& alone, const RigViews& views, int flags)
 {
     const std::vector<SharedWindow> windows = sharedWindowsOf(given, alone);
     size_t sources = 1;
     for (const SharedWindow& window : windows)
         sources = std::max(sources, std::min(window.members.size(), MAX_SOURCES));
     std::vector<RigStart> starts;
-    for (size_t rank = 0; rank < sources; rank++)
-        addBehind(rank, given, windows, bestOfEach(alone), views, flags, starts);
-    return starts;
+    addBehind(0, given, windows, bestOfEach(alone), views, flags, starts);
+    const std::vector<Minimum> first = multiStart(starts, { ANY_PLAUSIBLE }, views, flags);
+    starts.assign(first.begin(), first.end());
+    for (size_t rank = 1; rank < sources; rank++)
+        if (first.empty() || !isSeenAlone(rank, first[0], windows, alone))
+            addBehind(rank, given, windows, bestOfEach(alone), views, flags, starts);
+    return multiStart(starts, starts.size() == first.size() ? std::vector<Stage>{ LAST } : std::vector<Stage>{ ANY_PLAUSIBLE, LAST },
+                      views, flags);
 }
 
 //! Of the other cameras that look through the same window the one that tells most of it; -1: there is none.
@@ -249,7 +267,7 @@ std::vector<RigStart> swapped(const Minimum& best, const Rig& given, const std::
 RigStart incrementalStart(const Rig& given, const RigViews& views, int flags, std::vector<OtherMinimum>& others)
 {
     const std::vector<CameraMinima> alone = fitSingleCameras(given, views, flags);
-    std::vector<Minimum> minima = multiStart(assembledStarts(given, alone, views, flags), { ANY_PLAUSIBLE, LAST }, views, flags);
+    std::vector<Minimum> minima = assembledMinima(given, alone, views, flags);
     if (minima.empty() || !std::isfinite(minima[0].cost))
     {
         RigStart start;

@@ -73,12 +73,7 @@ void addFits(const std::vector<RigStart>& starts, const RigViews& views, const T
 
 bool isSameWindow(const Minimum& a, const Minimum& b, int c, double angle)
 {
-    const double SAME_DISTANCE = 0.05;      // part of the distance
-    const double NEAREST = 0.02;            // part of the range: of a window that ends on the camera, 5 % are nothing
-    const GlassWindow first = a.rig.cameras[c].window(), second = b.rig.cameras[c].window();
-    const double distance = first.distance;
-    return angleBetweenPlaces(first, second) <= angle &&
-           std::abs(distance - second.distance) <= SAME_DISTANCE*std::max(distance, NEAREST*meanRange(a.poses));
+    return isSameWindow(a.rig.cameras[c].window(), b.rig.cameras[c].window(), meanRange(a.poses), angle);
 }
 
 bool isSameMinimum(const Minimum& a, const Minimum& b, double angle)
@@ -101,6 +96,14 @@ bool isFirstBehind(const Rig& rig, int c)
 }
 
 } // namespace
+
+bool isSameWindow(const GlassWindow& first, const GlassWindow& second, double range, double angle)
+{
+    const double SAME_DISTANCE = 0.05;      // part of the distance
+    const double NEAREST = 0.02;            // part of the range: of a window that ends on the camera, 5 % are nothing
+    return angleBetweenPlaces(first, second) <= angle &&
+           std::abs(first.distance - second.distance) <= SAME_DISTANCE*std::max(first.distance, NEAREST*range);
+}
 
 RigViews pick(const RigViews& views, const std::vector<int>& which)
 {

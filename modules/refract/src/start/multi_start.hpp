@@ -26,6 +26,8 @@ struct Minimum : RigStart
 //! Windows whose normals differ by less are one minimum: radians.
 const double SAME_ANGLE = 0.01;
 const int ALL_VIEWS = INT_MAX;
+//! Of one camera. @param range of its targets
+bool isSameWindow(const GlassWindow& first, const GlassWindow& second, double range, double angle);
 
 //! One round of successive halving: which views count, how far each fit goes, and what the next round starts from.
 struct Stage
