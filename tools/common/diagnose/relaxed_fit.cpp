@@ -74,53 +74,31 @@ RelaxedFit::RelaxedFit(const RigData& data, const Fit& fit, bool posesKnown, dou
     start_.before = toVector(problem_.rig);
 }
 
-/** byNumbers times changes. The pixels of an image depend on its own camera's numbers alone, a few of those of a rig of many
-cameras: only these columns are multiplied. */
-static MatrixXd productOfImages(const MatrixXd& byNumbers, const std::vector<ImageOfView>& images, const MatrixXd& changes)
+//! By what is estimated and the shifts: only of the numbers that an image depends on, a few of those of a rig of many cameras.
+static MatrixXd byChanges(const ImageDerivatives& image, const MatrixXd& changes)
 {
-    MatrixXd result(byNumbers.rows(), changes.cols());
-    Eigen::Index row = 0;
-    for (const ImageOfView& image : images)
-    {
-        const Eigen::Index n = 2*(Eigen::Index)image.points.size();
-        const auto own = byNumbers.middleRows(row, n);
-        std::vector<Eigen::Index> columns;
-        for (Eigen::Index i = 0; i < own.cols(); i++)
-            if (!own.col(i).isZero(0.))
-                columns.push_back(i);
-        MatrixXd some(n, columns.size()), theirs(columns.size(), changes.cols());
-        for (size_t i = 0; i < columns.size(); i++)
-        {
-            some.col(i) = own.col(columns[i]);
-            theirs.row(i) = changes.row(columns[i]);
-        }
-        result.middleRows(row, n) = product(some, theirs);
-        row += n;
-    }
-    return result;
+    MatrixXd own(image.columns.size(), changes.cols());
+    for (size_t i = 0; i < image.columns.size(); i++)
+        own.row(i) = changes.row(image.columns[i]);
+    return product(image.byParameters, own);
 }
 
 //! @param changes of the numbers of direct images and of those through the windows
 RelaxedFit::Rows RelaxedFit::rowsOf(const Relaxed& at, size_t k, const std::vector<MatrixXd>& changes) const
 {
     const ViewObservations& observed = at.views[k];
-    std::vector<ImageOfView> images[2];
-    for (const ImageOfView& image : observed.images)
-        images[image.glass].push_back(image);
     const bool isExact = !problem_.poseInformation.empty() && !std::isfinite(problem_.poseInformation[k](0, 0));
     const Eigen::Index known = problem_.poseInformation.empty() || isExact ? 0 : 6, count = observed.pixels.size() + known;
     Rows rows{MatrixXd::Zero(count, changes[0].cols()), MatrixXd(count, 6), VectorXd(count)};
     Eigen::Index row = 0;
-    for (bool glass : {false, true})
+    for (const ImageOfView& image : observed.images)
     {
-        if (images[glass].empty())
-            continue;
-        const ViewDerivatives view = differentiateView(glass ? at.glass : at.direct, observed.objectPoints, observed.rvec,
-                                                       observed.tvec, images[glass]);
-        const Eigen::Index n = view.predicted.size();
-        rows.byAll.middleRows(row, n) = productOfImages(view.byParameters, images[glass], changes[glass])/noise_;
-        rows.byPose.middleRows(row, n) = view.byPose/noise_;
-        rows.rest.segment(row, n) = (observed.pixels.segment(row, n) - view.predicted)/noise_;
+        const ImageDerivatives own = differentiateImage(image.glass ? at.glass : at.direct, observed.objectPoints, observed.rvec,
+                                                        observed.tvec, image);
+        const Eigen::Index n = own.predicted.size();
+        rows.byAll.middleRows(row, n) = byChanges(own, changes[image.glass])/noise_;
+        rows.byPose.middleRows(row, n) = own.byPose/noise_;
+        rows.rest.segment(row, n) = (observed.pixels.segment(row, n) - own.predicted)/noise_;
         row += n;
     }
     if (known > 0)
@@ -149,7 +127,7 @@ RelaxedFit::Normal RelaxedFit::linearize(const Relaxed& at, const std::vector<Sh
     normal.chiSquare = problem_.priorOf(at.before);
     for (size_t k = 0; k < at.views.size(); k++)
     {
-        const Rows rows = rowsOf(at, k, changes);
+        Rows rows = rowsOf(at, k, changes);
         normal.chiSquare += rows.rest.squaredNorm();
         if (!std::isfinite(normal.chiSquare))
             return normal;
@@ -160,7 +138,7 @@ RelaxedFit::Normal RelaxedFit::linearize(const Relaxed& at, const std::vector<Sh
         const auto byAll = all.leftCols(count);
         addGram(byAll, 1., normal.matrix);
         normal.right += transposeTimesVector(byAll, all.col(count));
-        normal.rows.push_back(rows);
+        normal.rows.push_back(std::move(rows));
     }
     normal.matrix = normal.matrix.selfadjointView<Eigen::Lower>();
     return normal;
@@ -322,7 +300,7 @@ double RelaxedFit::noiseOfSingleImages() const
                     break;
                 row += 2*(Eigen::Index)other.points.size();
             }
-            const ViewDerivatives view = differentiateView(problem_.rig, observed.objectPoints, observed.rvec, observed.tvec, {image});
+            const ImageDerivatives view = differentiateImage(problem_.rig, observed.objectPoints, observed.rvec, observed.tvec, image);
             const Eigen::Index n = view.predicted.size();
             if (n <= 6)
                 continue;

@@ -64,6 +64,47 @@ Ptr<RefractiveCamera> cameraOf(const RigModel& rig, int camera, bool glass)
 
 } // namespace
 
+ImageDerivatives differentiateImage(const RigModel& rig, const std::vector<Point3d>& objectPoints, const Vec3d& rvec, const Vec3d& tvec,
+                                    const ImageOfView& image)
+{
+    const bool hasTargetErrors = !rig.targetCovariance.empty();
+    const ParameterColumns at = columnsOf(rig, image.camera);
+    const int own = image.glass ? at.end - at.lens : at.lensCount;
+    ImageDerivatives result;
+    const auto addColumns = [&](int first, int count) {
+        for (int i = 0; i < count; i++)
+            result.columns.push_back(first + i); };
+    addColumns(at.lens, own);
+    if (image.camera > 0)
+        addColumns(extrinsicsColumn(rig, image.camera), 6);
+    if (hasTargetErrors)
+        addColumns(columnCount(rig), TARGET_ERRORS);
+    const PoseInImage pose(rig, image, rvec, tvec);
+    std::vector<Point3d> given;
+    for (int i : image.points)
+        given.push_back(objectPoints[i]);
+    std::vector<Point2d> pixels;
+    Mat jacobian;
+    refractiveProjectPoints(pointsOfTarget(rig, given), pose.rvec, pose.tvec, cameraOf(rig, image.camera, image.glass), pixels, noArray(),
+                            jacobian);
+    const MatrixXd J = toEigen(jacobian);
+    const Eigen::Index n = J.rows();
+    result.predicted.resize(n);
+    for (size_t i = 0; i < pixels.size(); i++)
+        result.predicted.segment<2>(2*i) << pixels[i].x, pixels[i].y;
+    result.byPose = product(J.leftCols(6), pose.byPose);
+    result.byParameters.resize(n, result.columns.size());
+    result.byParameters.leftCols(own) = J.middleCols(6, own);
+    if (image.camera > 0)
+        result.byParameters.middleCols(own, 6) = product(J.leftCols(6), pose.byRig);
+    if (hasTargetErrors)
+    {
+        result.byParameters.col(result.byParameters.cols() - TARGET_ERRORS) = byScale(J.middleCols(3, 3), given, rotationMatrix(pose.rvec));
+        result.byParameters.rightCols(6) = product(J.leftCols(6), pose.byMotion);
+    }
+    return result;
+}
+
 ViewDerivatives differentiateView(const RigModel& rig, const std::vector<Point3d>& objectPoints, const Vec3d& rvec,
                                   const Vec3d& tvec, const std::vector<ImageOfView>& images)
 {
@@ -73,38 +114,16 @@ ViewDerivatives differentiateView(const RigModel& rig, const std::vector<Point3d
     ViewDerivatives view;
     view.predicted.resize(rows);
     view.byPose.resize(rows, 6);
-    const bool hasTargetErrors = !rig.targetCovariance.empty();
-    const int ofTargets = columnCount(rig);
-    view.byParameters = MatrixXd::Zero(rows, ofTargets + (hasTargetErrors ? TARGET_ERRORS : 0));
-    int row = 0;
+    view.byParameters = MatrixXd::Zero(rows, columnCount(rig) + (rig.targetCovariance.empty() ? 0 : TARGET_ERRORS));
+    Eigen::Index row = 0;
     for (const ImageOfView& image : images)
     {
-        const PoseInImage pose(rig, image, rvec, tvec);
-        std::vector<Point3d> given;
-        for (int i : image.points)
-            given.push_back(objectPoints[i]);
-        const std::vector<Point3d> object = pointsOfTarget(rig, given);
-        std::vector<Point2d> pixels;
-        Mat jacobian;
-        refractiveProjectPoints(object, pose.rvec, pose.tvec, cameraOf(rig, image.camera, image.glass), pixels, noArray(),
-                                jacobian);
-        const MatrixXd J = toEigen(jacobian);
-        const ParameterColumns at = columnsOf(rig, image.camera);
-        const int n = (int)J.rows(), own = image.glass ? at.end - at.lens : at.lensCount;
-        for (size_t i = 0; i < pixels.size(); i++)
-        {
-            view.predicted[row + 2*i] = pixels[i].x;
-            view.predicted[row + 2*i + 1] = pixels[i].y;
-        }
-        view.byPose.middleRows(row, n) = product(J.leftCols(6), pose.byPose);
-        view.byParameters.block(row, at.lens, n, own) = J.middleCols(6, own);
-        if (image.camera > 0)
-            view.byParameters.block(row, extrinsicsColumn(rig, image.camera), n, 6) = product(J.leftCols(6), pose.byRig);
-        if (hasTargetErrors)
-        {
-            view.byParameters.block(row, ofTargets, n, 1) = byScale(J.middleCols(3, 3), given, rotationMatrix(pose.rvec));
-            view.byParameters.block(row, ofTargets + 1, n, 6) = product(J.leftCols(6), pose.byMotion);
-        }
+        const ImageDerivatives own = differentiateImage(rig, objectPoints, rvec, tvec, image);
+        const Eigen::Index n = own.predicted.size();
+        view.predicted.segment(row, n) = own.predicted;
+        view.byPose.middleRows(row, n) = own.byPose;
+        for (size_t i = 0; i < own.columns.size(); i++)
+            view.byParameters.block(row, own.columns[i], n, 1) = own.byParameters.col(i);
         row += n;
     }
     return view;

@@ -22,6 +22,18 @@ struct ImageOfView
     std::vector<int> points;            //!< indices into the target's points
 };
 
+//! Of one image, which depends on few parameters.
+struct ImageDerivatives
+{
+    Eigen::VectorXd predicted;          //!< u, v of each point
+    std::vector<int> columns;           //!< parameters that it depends on, as ViewDerivatives has them
+    Eigen::MatrixXd byParameters;       //!< by these
+    Eigen::MatrixXd byPose;             //!< rvec, tvec of board -> camera 1
+};
+
+ImageDerivatives differentiateImage(const RigModel& rig, const std::vector<cv::Point3d>& objectPoints, const cv::Vec3d& rvec,
+                                    const cv::Vec3d& tvec, const ImageOfView& image);
+
 struct ViewDerivatives
 {
     Eigen::VectorXd predicted;          //!< u, v of each point, image by image
