@@ -23,11 +23,7 @@ void start(RigCalibration& c, bool robust, int maxIterations, std::optional<RigM
     if (robust)
         c.outliers = startWithoutOutliers(c.data, c.options, c.start, c.lensSources, maxIterations, only);
     else
-    {
-        c.start = startModel(c.data, c.options, c.lensSources);
-        if (only)
-            c.start = placedAs(c.start, *only);
-    }
+        c.start = startModel(c.data, c.options, c.lensSources, only ? &*only : nullptr);
 }
 
 void fit(RigCalibration& c, const std::function<void()>& step, int maxIterations, bool isPlaced)

@@ -182,23 +182,6 @@ bool isOnlyMinimum(const RigData& data, const Fit& fit, int flags)
     return isSearched && countNonZero(fit.otherMinima == fit.otherMinima) == 0;     // NaN: there is none
 }
 
-RigModel placedAs(const RigModel& start, const RigModel& found)
-{
-    RigModel rig = start.clone();
-    rig.extrinsics = found.extrinsics;
-    for (size_t c = 0; c < rig.cameras.size(); c++)
-    {
-        GlassWindow window = rig.cameras[c]->window();
-        const GlassWindow there = found.cameras[c]->window();
-        window.normal = there.normal;
-        window.distance = there.distance;
-        window.center = there.center;
-        window.axis = there.axis;
-        rig.cameras[c]->setWindow(window);
-    }
-    return rig;
-}
-
 Fit fitAllImages(const RigData& data, const RigModel& start, const std::vector<LensSource>& lensSources, int& flags,
                  int maxIterations, bool isPlaced)
 {

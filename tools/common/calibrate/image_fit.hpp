@@ -20,9 +20,6 @@ Fit fitImages(const RigData& data, const RigModel& start, const std::vector<int>
 cameras are, which takes seconds to search, and that search met no other plausible minimum. */
 bool isOnlyMinimum(const RigData& data, const Fit& fit, int flags);
 
-//! The initial values, with the cameras and the windows at the places where a fit has them.
-RigModel placedAs(const RigModel& start, const RigModel& found);
-
 /** One fit of all images: lenses that came from images are free in it, so that their uncertainty is in every +-; direct
 images are views too, each with its own pose. The windows are found first, with the lenses held.
 @param flags gets GLASS_FREE_INTRINSICS if so

@@ -164,7 +164,7 @@ Outliers startWithoutOutliers(RigData& data, const RigOptions& options, RigModel
     if (only)
     {
         RigData rest = data;
-        start = placedAs(startModel(data, options, lensSources), *only);
+        start = startModel(data, options, lensSources, &*only);
         const Outliers outliers = rejectOutliers(rest, start, options.flags | FROM_EARLIER_FIT, maxIterations);
         if (areSingle(outliers, data))
         {

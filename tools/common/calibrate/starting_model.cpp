@@ -321,7 +321,25 @@ static RigOptions withOpenDistance(const RigData& data, const RigModel& rig, Rig
     return options;
 }
 
-RigModel startModel(const RigData& data, const RigOptions& given, std::vector<LensSource>& lensSources)
+//! The initial values, with the cameras and the windows at the places where a fit has them.
+static RigModel placedAs(const RigModel& start, const RigModel& found)
+{
+    RigModel rig = start.clone();
+    rig.extrinsics = found.extrinsics;
+    for (size_t c = 0; c < rig.cameras.size(); c++)
+    {
+        GlassWindow window = rig.cameras[c]->window();
+        const GlassWindow there = found.cameras[c]->window();
+        window.normal = there.normal;
+        window.distance = there.distance;
+        window.center = there.center;
+        window.axis = there.axis;
+        rig.cameras[c]->setWindow(window);
+    }
+    return rig;
+}
+
+RigModel startModel(const RigData& data, const RigOptions& given, std::vector<LensSource>& lensSources, const RigModel* found)
 {
     RigOptions options = given;
     RigModel rig;
@@ -338,7 +356,8 @@ RigModel startModel(const RigData& data, const RigOptions& given, std::vector<Le
         rig.cameras.back()->setImageSize(data.imageSize[c]);
     }
     rig.windows = options.windows;
-    startExtrinsics(data, options.flags & GLASS_USE_POSES, rig);
+    if (!found)
+        startExtrinsics(data, options.flags & GLASS_USE_POSES, rig);
     if (options.std.isDistanceOpen)
     {
         options = withOpenDistance(data, rig, options);
@@ -348,7 +367,7 @@ RigModel startModel(const RigData& data, const RigOptions& given, std::vector<Le
     for (int c = 0; c < data.cameraCount; c++)
         rig.known.push_back(knownOf(*rig.cameras[c], options, c));
     rig.targetCovariance = targetCovarianceOf(data, rig, options.std);
-    return rig;
+    return found ? placedAs(rig, *found) : rig;
 }
 
 } // namespace tools

@@ -57,8 +57,9 @@ KnownCamera knownOf(const cv::refract::RefractiveCamera& camera, const RigOption
 moved by so much, they also turned about their mean position, so that their edges moved by as much. */
 cv::Mat targetCovarianceOf(const RigData& data, const RigModel& rig, const GivenStd& std);
 
-//! Initial values: lenses, the windows as given, and R, T from the view that fits the others best.
-RigModel startModel(const RigData& data, const RigOptions& options, std::vector<LensSource>& lensSources);
+/** Initial values: lenses, the windows as given, and R, T from the view that fits the others best.
+@param found a fit: cameras and windows are at its places; null: there was none */
+RigModel startModel(const RigData& data, const RigOptions& options, std::vector<LensSource>& lensSources, const RigModel* found = nullptr);
 
 } // namespace tools
 

@@ -87,9 +87,7 @@ PlainFit fitPlainly(const CalibrationInput& input, const std::optional<RigModel>
         std::vector<LensSource> sources;
         const RigOptions exact = exactly(input.options);
         RigOptions options = input.options;
-        RigModel start = startModel(input.data, exact, sources);
-        if (found)
-            start = placedAs(start, *found);
+        const RigModel start = startModel(input.data, exact, sources, found ? &*found : nullptr);
         plain.noise = imageNoise(start, input.data.views).sigma;
         try
         {
