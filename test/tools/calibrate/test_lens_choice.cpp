@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // The lens model that refract_calib chooses: between OpenCV's and cv::fisheye's, from direct images, or through the window.
+#include "calibrate/image_fit.hpp"
 #include "calibrate/lens_choice.hpp"
 #include "calibrate/pinhole_camera.hpp"
 #include "calibrate/pinhole_rig.hpp"
@@ -82,6 +83,39 @@ TEST_CASE("A lens that k1 and k2 describe is chosen by its direct images, and sa
     CHECK(std::isnan(known.covariance.at<double>(4, 4)));       // k1 is as free as it was
     CHECK((options.flags & GLASS_FIX_TANGENT_DIST) != 0);
     CHECK((options.flags & (GLASS_FIX_K1 | GLASS_FIX_K2)) == 0);
+}
+
+TEST_CASE("A fit that holds the lens holds what the lens choice left out, too", "[lens_choice]")
+{
+    const GlassWindow window(Vec3d(0.12, -0.06, 1), 15, 1.52, 0);
+    RigData data = dataOf(bent(), 12, false, 21);
+    RigOptions options;
+    options.window = window;
+    options.window.normal = Vec3d(0, 0, 1);
+    setLens(chooseLens(data, options, true), options);
+    REQUIRE(options.carriedCoefficients(0) > options.lensCoefficients);
+    const RigData behind = dataOf(bent(window), 9, true, 22);
+    std::vector<int> through;
+    for (const View& view : behind.views)
+    {
+        through.push_back((int)data.views.size());
+        data.views.push_back(view);
+    }
+    std::vector<LensSource> sources;
+    const RigModel start = startModel(data, options, sources);
+    const Fit held = fitImages(data, start, through, options.flags);
+    const int lens = start.cameras[0]->lensParameters().rows;
+    CHECK(countNonZero(held.stdDeviations.rowRange(0, lens)) == 0);
+    CHECK(countNonZero(held.stdDeviations.rowRange(lens, held.stdDeviations.rows)) > 0);
+    CHECK(norm(held.rig.cameras[0]->lensParameters(), start.cameras[0]->lensParameters()) == 0);
+    RigModel exact = start.clone();
+    exact.known[0].covariance = Mat();
+    const Fit plain = fitImages(data, exact, through, options.flags);
+    CHECK(held.rms == Approx(plain.rms).epsilon(1e-9));
+    CHECK(held.dof == plain.dof);
+    // Free, it is what the images leave open.
+    const Fit free = fitImages(data, start, allViews(data), options.flags | GLASS_FREE_INTRINSICS);
+    CHECK(free.stdDeviations.at<double>(INTRINSICS + options.lensCoefficients) > 0.);
 }
 
 TEST_CASE("A wide fisheye is chosen where OpenCV's model does not describe it", "[lens_choice]")

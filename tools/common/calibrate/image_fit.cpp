@@ -85,21 +85,32 @@ void startAtKnown(RigModel& rig)
     }
 }
 
-std::vector<Mat> covariancesOf(const RigModel& rig)
+/** What is known of each camera in a fit with these flags. In one that holds lenses, what a lens choice left out (only that is known of a
+lens of which else nothing is) is held with the rest. */
+std::vector<Mat> covariancesOf(const RigModel& rig, int flags)
 {
     std::vector<Mat> covariances;
     for (const KnownCamera& known : rig.known)
+    {
         covariances.push_back(known.covariance);
+        const bool isLensUnknown = !known.covariance.empty() && std::isnan(known.covariance.at<double>(0, 0));
+        if (!isLensUnknown || (flags & GLASS_FREE_INTRINSICS))
+            continue;
+        covariances.back() = known.covariance.clone();
+        Mat lens = covariances.back()(Rect(0, 0, known.lens.rows, known.lens.rows));
+        lens.setTo(0);
+        lens.diag().setTo(NAN);
+    }
     return covariances;
 }
 
-//! How many numbers are known with a covariance.
-int countPriors(const RigModel& rig)
+//! How many numbers are known with a covariance, of each camera.
+int countPriors(const RigModel& rig, const std::vector<Mat>& covariances)
 {
     int count = 0;
-    for (size_t c = 0; c < rig.known.size(); c++)
+    for (size_t c = 0; c < covariances.size(); c++)
     {
-        const Mat covariance = rig.known[c].covariance;
+        const Mat covariance = covariances[c];
         const int lens = rig.known[c].lens.rows;
         const bool ownsWindow = rig.ownsWindow((int)c);
         const ParameterColumns at = columnsOf(*rig.cameras[c]);
@@ -132,6 +143,7 @@ Fit fitImages(const RigData& data, const RigModel& start, const std::vector<int>
         fit.tvecs.push_back(view.pose->tvec);
         poseCovariances.push_back(view.pose->covariance);
     }
+    const std::vector<Mat> cameraCovariances = covariancesOf(fit.rig, flags);
     std::vector<Mat> Rs, Ts;
     Mat_<double> targetErrors;
     for (int c = 0; c < data.cameraCount; c++)
@@ -147,7 +159,7 @@ Fit fitImages(const RigData& data, const RigModel& start, const std::vector<int>
                               fit.rig.windows, Rs, Ts, fit.rvecs, fit.tvecs, fit.stdDeviations, fit.covariance, noArray(),
                               fit.imageStatus, fit.inliers, fit.otherMinima, fit.rig.targetCovariance, targetErrors,
                               data.cameraCount == 1 ? flags : flags | GLASS_FREE_EXTRINSICS, poseCovariances, criteria,
-                              covariancesOf(fit.rig));
+                              cameraCovariances);
     }
     catch (const CalibrationError& e)
     {
@@ -170,7 +182,7 @@ Fit fitImages(const RigData& data, const RigModel& start, const std::vector<int>
         points += used.empty() ? 0 : countNonZero(used);
     const size_t free = estimatedWindowParameters(fit).size() + estimatedRigParameters(fit).size();
     const size_t poses = flags & GLASS_USE_POSES ? 0 : views.size();        // known ones bring as many numbers as they have
-    fit.dof = 2.*points + countPriors(fit.rig) - (double)free - 6.*(double)poses;
+    fit.dof = 2.*points + countPriors(fit.rig, cameraCovariances) - (double)free - 6.*(double)poses;
     fit.sigma = fit.rms*std::sqrt(points/fit.dof);
     return fit;
 }
