@@ -66,14 +66,15 @@ VectorXd pixelsAtCorners(const Lens& lens)
 struct LeftOut
 {
     int index;                  //!< in its lens
+    bool isTangential;
     double pixels;              //!< at the corner, of a unit
     double estimate;
     VectorXd half;              //!< row of a root of the covariance
 };
 
-//! Of one camera and kind; nothing of those that the data, or the corners, do not show.
-std::vector<LeftOut> leftOutOf(const Problem& problem, int camera, const std::vector<bool>& isLeftOut, bool isTangential,
-                               const MatrixXd& half, const VectorXd& step)
+//! Of one camera; nothing of those that the data, or the corners, do not show.
+std::vector<LeftOut> leftOutOf(const Problem& problem, int camera, const std::vector<bool>& isLeftOut, const MatrixXd& half,
+                               const VectorXd& step)
 {
     const FreeSpace space(problem, false);
     const auto isLens = [&](const ParameterBlock& block) { return block.kind == ParameterBlock::LENS && block.index == camera; };
@@ -85,8 +86,8 @@ std::vector<LeftOut> leftOutOf(const Problem& problem, int camera, const std::ve
     {
         if (!lens->isFree[i])
             continue;
-        if (isLeftOut[i] && (lens->names[i].find("p") == 0) == isTangential && pixels[i] > 0 && !half.row(column).isZero(0))
-            all.push_back({ i, pixels[i], step[column], half.row(column) });
+        if (isLeftOut[i] && pixels[i] > 0 && !half.row(column).isZero(0))
+            all.push_back({ i, lens->names[i].find("p") == 0, pixels[i], step[column], half.row(column) });
         column++;
     }
     return all;
@@ -109,9 +110,12 @@ std::vector<Mat> priorsOfLeftOut(const Problem& problem, const std::vector<std::
             for (int c = 0; c < count; c++)
                 if (isLeftOut[camera][r] && isLeftOut[camera][c])
                     prior(r, c) = 0;
+        const std::vector<LeftOut> all = leftOutOf(problem, camera, isLeftOut[camera], half, step);
         for (const bool isTangential : { false, true })
         {
-            const std::vector<LeftOut> some = leftOutOf(problem, camera, isLeftOut[camera], isTangential, half, step);
+            std::vector<LeftOut> some;
+            std::copy_if(all.begin(), all.end(), std::back_inserter(some), [=](const LeftOut& parameter)
+                         { return parameter.isTangential == isTangential; });
             const int n = (int)some.size();
             MatrixXd C(n, n);
             VectorXd estimates(n);
