@@ -4,6 +4,7 @@
 // Mistakes in what is given, told from images that do not fit.
 #include "diagnose/fit_quality.hpp"
 #include "diagnose/diagnosis.hpp"
+#include "diagnose/image_disagreement.hpp"
 #include "diagnose/value_mistakes.hpp"
 #include "assess/rig_calibration.hpp"
 #include "calibrate/image_fit.hpp"
@@ -169,6 +170,38 @@ TEST_CASE("Images exchanged, moved or of other moments are found and named", "[d
     CHECK_THAT(explained(shared), Catch::Contains("leave --shared-window") && !Catch::Contains("same moment"));
 
     CHECK_THAT(explained(rightlyGiven(1, random, 1)), Catch::Contains("in 3 of 6 pairs") && Catch::Contains("--size"));
+}
+
+TEST_CASE("Of exchanges the images that are exchanged are compared again, and none that there are not is one", "[diagnosis]")
+{
+    scenes::Random random(760);
+    CalibrationInput input = rightlyGiven(3, random);
+    for (View& view : input.data.views)
+    {
+        view.direct = {};
+        std::swap(view.glass[1], view.glass[2]);
+    }
+    const MixUps mixUps = findMixUps(input);
+    REQUIRE(mixUps.camerasApart > WINDOWS_PX);
+    std::vector<std::string> sentences;
+    for (const std::vector<MixUp>* some : {&mixUps.clear, &mixUps.possible})
+        for (const MixUp& mixUp : *some)
+            sentences.push_back(mixUp.sentence);
+    CAPTURE(sentences);
+    CHECK(std::find(sentences.begin(), sentences.end(), "--glass2 and --glass3 exchanged") != sentences.end());
+    CHECK(std::find(sentences.begin(), sentences.end(), "--direct2 and --direct3 exchanged") == sentences.end());
+    BoardPoses poses;
+    for (int other : {0, 1})
+    {
+        RoughLenses lenses = roughLensesOf(input.data);
+        Disagreements changed = disagreementsOf(input.data, input.options, lenses, poses);
+        RigData data = input.data;
+        for (View& view : data.views)
+            std::swap(view.glass[other], view.glass[2]);
+        std::swap(lenses.glass[other], lenses.glass[2]);
+        update(data, input.options, lenses, {other, 2}, poses, changed);
+        CHECK(changed.kinds() == disagreementsOf(data, input.options, lenses, poses).kinds());
+    }
 }
 
 TEST_CASE("What the library says is told in the tool's words", "[diagnosis]")

@@ -3,8 +3,10 @@
 
 // Which given value the images contradict: the one that is wrong, and not what its error makes look wrong.
 #include "diagnose/hypothesis_tests.hpp"
+#include "diagnose/causes.hpp"
 #include "assess/rig_calibration.hpp"
 #include "calibrate/image_fit.hpp"
+#include "measure/chi_squared.hpp"
 #include "paper_rig.hpp"
 
 using namespace cv;
@@ -125,6 +127,34 @@ TEST_CASE("Of a lens that errs as a whole, no parameter is named", "[hypothesis_
     CAPTURE(text);
     CHECK(text.find("the images contradict --camera: set free, the lens would differ as a whole, though in no parameter alone, "
                     "a better fit by ") != std::string::npos);
+}
+
+TEST_CASE("Of lenses given right, those that promise nothing are not fitted", "[hypothesis_tests]")
+{
+    // A lens of eight numbers explains eight units of chi^2 of right images, as one number explains one.
+    scenes::Random random(3120);
+    RigCalibration c;
+    c.data.cameraCount = 3;
+    c.start = paperRig(3);
+    for (int camera = 0; camera < 3; camera++)
+    {
+        c.data.imageSize[camera] = Size(1280, 1024);
+        c.options.known[camera] = c.start.cameras[camera]->clone();
+    }
+    c.options.window = paper::pane(50, Vec3d(0, 0, 1));
+    for (int i = 0; i < 8; i++)
+    {
+        const Vec3d tvec(random.uniform(-30, 30), random.uniform(-20, 20), random.uniform(560, 660));
+        c.data.views.push_back(observe(c.start, board(6, 5), random.vector(0.4), tvec, false, 0.1, random));
+        c.fit.views.push_back(i);
+    }
+    c.fit = fitImages(c.data, c.start, c.fit.views, c.options.flags);
+    REQUIRE(causesOf(c.data, c.options, c.fit).size() > 6);
+    for (const CauseTest& test : testCauses(c.data, c.options, c.fit))
+    {
+        CAPTURE(test.kind, test.parameters, test.deviance);
+        CHECK(upperTailChiSquared(test.parameters, test.deviance) < 0.1);
+    }
 }
 
 TEST_CASE("Layers given wrong are contradicted by their sum", "[hypothesis_tests]")
