@@ -6,6 +6,7 @@
 #include "target/limited_search.hpp"
 #include "target/partial_chessboard.hpp"
 #include <catch2/catch.hpp>
+#include <opencv2/imgproc.hpp>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
@@ -40,6 +41,28 @@ TEST_CASE("A board that is partly out of the picture is told by what is seen of 
     CHECK(mayBeInView(pieceAt({20, 60}, 40, {6, 5}), board, image));                // they would be in view
     CHECK(mayBeInView(pieceAt({20, 60}, 90, {4, 3}), board, image));                // as much may be anything
     CHECK(mayBeInView(SeenChessboard(), board, image));
+}
+
+TEST_CASE("What is seen of a board is looked for until it is enough", "[limited_search]")
+{
+    const int SIDE = 90;
+    cv::Mat image(480, 640, CV_8U, cv::Scalar(230));        // a board that goes on beyond the left and the lower border
+    for (int row = 0; row < 6; row++)
+        for (int column = 0; column < 7; column++)
+            if ((row + column) % 2 == 0)
+                cv::rectangle(image, cv::Rect(column*SIDE - 20, 90 + row*SIDE, SIDE, SIDE), cv::Scalar(30), cv::FILLED);
+    cv::GaussianBlur(image, image, cv::Size(), 1.);
+    int calls = 0;
+    const auto look = [&](bool isEnough) {
+        calls = 0;
+        return lookForChessboard(image, [&](const SeenChessboard& seen) {
+            calls++;
+            CHECK((int)seen.corners.size() == seen.size.area());
+            return isEnough; }); };
+    const SeenChessboard first = look(true);
+    CHECK(calls == 1);
+    CHECK_FALSE(mayBeInView(first, cv::Size(9, 6), image.size()));
+    CHECK(look(false).size.area() == lookForChessboard(image).size.area());
 }
 
 TEST_CASE("A search ends in its time, whatever it does", "[limited_search]")

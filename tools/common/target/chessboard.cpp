@@ -99,7 +99,10 @@ std::vector<Point2d> detectChessboard(const Mat& grey, Size size, Size* other, i
     {
         if (!other && !checkChessboard(grey, size))         // nor would the older one find any
             return {};
-        const SeenChessboard glance = lookForChessboard(grey);
+        const auto isCutOff = [&](const SeenChessboard& seen) {
+            return !mayBeInView(seen, size, grey.size())
+                && isAlternating(std::vector<Point2d>(seen.corners.begin(), seen.corners.end()), seen.size, grey); };
+        const SeenChessboard glance = other ? lookForChessboard(grey) : lookForChessboard(grey, isCutOff);
         const Size seenSize = sorted(glance.size) != sorted(size) ? sorted(glance.size) : Size();
         if (other)
             *other = seenSize;

@@ -84,22 +84,26 @@ bool glimpseChessboard(const Mat& grey, Size size)
     return findChessboardCornersSB(smallCopy(grey), size, corners);
 }
 
-SeenChessboard lookForChessboard(const Mat& grey)
+SeenChessboard lookForChessboard(const Mat& grey, const std::function<bool(const SeenChessboard&)>& isEnough)
 {
-    const int leastCorners = 12;
+    const int leastCorners = 12, most = LEAST + 2;
     const Mat copy = smallCopy(grey);
     SeenChessboard largest;
-    for (int start = LEAST + 2; start >= LEAST; start--)        // none of them finds every board
+    for (int k = LEAST; k <= most; k++)         // none of them finds every board; the smallest finds most pieces
     {
+        const int start = isEnough ? k : LEAST + most - k;
         Mat meta;
         std::vector<Point2f> corners;
-        if (findChessboardCornersSB(copy, Size(start, start), corners, CALIB_CB_EXHAUSTIVE | CALIB_CB_LARGER, meta)
-            && meta.size().area() >= std::max(leastCorners, largest.size.area() + 1)
-            && isEvenGrid(std::vector<Point2d>(corners.begin(), corners.end()), meta.size()))
-            largest = {meta.size(), corners};
+        if (!findChessboardCornersSB(copy, Size(start, start), corners, CALIB_CB_EXHAUSTIVE | CALIB_CB_LARGER, meta)
+            || meta.size().area() < std::max(leastCorners, largest.size.area() + 1)
+            || !isEvenGrid(std::vector<Point2d>(corners.begin(), corners.end()), meta.size()))
+            continue;
+        for (Point2f& corner : corners)
+            corner *= (float)grey.cols/(float)copy.cols;
+        largest = {meta.size(), corners};
+        if (isEnough && isEnough(largest))
+            break;
     }
-    for (Point2f& corner : largest.corners)
-        corner *= (float)grey.cols/(float)copy.cols;
     return largest;
 }
 

@@ -5,6 +5,7 @@
 #define REFRACT_TOOLS_PARTIAL_CHESSBOARD_HPP
 
 #include <opencv2/core.hpp>
+#include <functional>
 #include <vector>
 
 namespace tools {
@@ -28,8 +29,9 @@ struct SeenChessboard
     std::vector<cv::Point2f> corners;       //!< pixels of the image
 };
 
-//! The largest chessboard that is seen in a small copy of the image, whatever it is.
-SeenChessboard lookForChessboard(const cv::Mat& grey);
+/** The largest chessboard that is seen in a small copy of the image, whatever it is.
+@param isEnough of one that is seen: no larger one is looked for */
+SeenChessboard lookForChessboard(const cv::Mat& grey, const std::function<bool(const SeenChessboard&)>& isEnough = nullptr);
 
 /** False if a piece of the board was seen, and wherever on the board that piece may be, a part of the board is out of the image.
 @param size of the whole board */
