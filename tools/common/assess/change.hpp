@@ -38,6 +38,7 @@ struct Change
     double chartFactor = 1.;                //!< from the parameter to the chart's unit
 
     bool isTurn() const { return ease <= FIRST_CAMERA_TURNS; }     //!< of a camera about its own centre
+    int turnedCamera() const { return ease == FIRST_CAMERA_TURNS ? 0 : camera; }
     int size() const;
     VectorXd ranges() const;
 };

@@ -383,19 +383,19 @@ private:
 
     /* What explains as much is told in the order of what can happen. Nobody said that the pane is another. And of a scene: a camera turns
     in its mount before a window moves, and both before a sensor does in its camera, which a scene hardly tells from a turn. About the base
-    line a turn of one of two cameras is one of the other: it is said of the second. */
+    line a turn of one of two cameras is one of the other: both are told first. */
     void tellWhatCanHappenFirst()
     {
-        std::stable_partition(named_.begin(), named_.end(), [](const Candidate& c) {
+        const auto end = std::stable_partition(named_.begin(), named_.end(), [](const Candidate& c) {
             return !c.tested || !c.tested->change->isOfAnotherPane; });
-        if (!isScene_ || named_.empty() || named_[0].tested->change->isOfAnotherPane)
+        if (!isScene_ || end == named_.begin())
             return;
-        const double AS_LIKELY = 10.;           // difference of two chi^2
-        auto first = named_.begin();
-        for (auto c = first; c != named_.end() && !c->tested->change->isOfAnotherPane; ++c)
-            if (c->chiSquare < named_[0].chiSquare + AS_LIKELY && c->tested->change->ease < first->tested->change->ease)
-                first = c;
-        std::rotate(named_.begin(), first, first + 1);
+        const double AS_LIKELY = 10., best = named_[0].chiSquare;       // difference of two chi^2
+        const auto less = std::stable_partition(named_.begin(), end, [=](const Candidate& c) { return c.chiSquare < best + AS_LIKELY; });
+        std::stable_sort(named_.begin(), less, [](const Candidate& a, const Candidate& b) {
+            return a.tested->change->ease < b.tested->change->ease; });
+        for (auto c = named_.begin(); c != less && c->tested->change->isTurn(); ++c)
+            result_.mayHaveTurned.push_back(c->tested->change->turnedCamera());
     }
 
     bool isNamed(const Tested& tested) const
@@ -491,6 +491,14 @@ std::string causesIn(const CheckResult& result)
 {
     const size_t MOST = 3;
     std::string text;
+    if (result.mayHaveTurned.size() > 1)
+    {
+        std::vector<int> cameras = result.mayHaveTurned;
+        std::sort(cameras.begin(), cameras.end());
+        for (int camera : cameras)
+            text += (text.empty() ? "" : " or ") + cv::format("camera %d", camera + 1);
+        text += " turned, and these images do not tell which: ";
+    }
     for (size_t i = 0; i < std::min(MOST, result.changes.size()); i++)
         text += (i ? "; or " : "") + result.changes[i].sentence;
     if (result.changes.size() > MOST)

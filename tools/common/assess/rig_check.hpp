@@ -76,6 +76,8 @@ struct CheckResult
     double critical;                    //!< probability below which one hypothesis is a change
     double noiseHere;                   //!< of the images by themselves; 0: too few points tell
     ChartedScore charted;
+    //! From 0: of a scene, cameras of which each alone explains it by its turn as well as the best does. Their changes are the first.
+    std::vector<int> mayHaveTurned;
     bool isMixup = false;               //!< the best are images that are not what they are given for
 };
 

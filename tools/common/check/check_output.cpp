@@ -104,8 +104,12 @@ Json checkJson(const CheckResult& result, const CheckOptions& o, const CheckInpu
     for (const TurnCheck& turn : result.turns)
         turns.append({{"camera", turn.camera + 1}, {"name", turn.name}, {"std_deg", turn.stdDeg},
                       {"probability_if_unchanged", turn.probability}, {"detection_probability", powerOf(turn, result, o.detect)}});
+    std::vector<int> mayHaveTurned;
+    for (int camera : result.mayHaveTurned)
+        mayHaveTurned.push_back(camera + 1);
     return {
-        {"verdict", verdict}, {"why", why}, {"windows", windows}, {"turns", turns}, {"changes", changes}, {"explained", result.explained},
+        {"verdict", verdict}, {"why", why}, {"windows", windows}, {"turns", turns}, {"changes", changes},
+        {"may_have_turned", mayHaveTurned}, {"explained", result.explained},
         {"false_alarm", o.falseAlarm}, {"detect_deg", o.detect}, {"sigma_px", input.sigma}, {"sigma_seen_px", result.sigmaSeen}};
 }
 
