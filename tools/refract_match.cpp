@@ -117,8 +117,9 @@ void print(const SceneMatches& result, double withoutWindows)
               << format("%d were found within %.1f px of their curves, %d taken, spread over image and depth\n", result.found,
                         result.search, result.chosen)
               << format("residuals: %.3f px RMS; the same matches with the windows ignored: %.3f px\n", result.residual, withoutWindows)
-              << format("standard deviation of a pixel: %.3f px, by the size s of a feature sqrt(%.3f^2 + (%.3f s)^2)\n",
-                        result.good.matches.usualStd(), result.noise.floor, result.noise.share);
+              << format("standard deviation of a pixel: %.3f px; sqrt(%.3f^2 + (%.3f^2 + %.3f^2 d) s^2) of a feature of size s whose "
+                        "descriptors differ d times as much as usual\n",
+                        result.good.matches.usualStd(), result.noise.floor, result.noise.share, result.noise.unlikeShare);
 }
 
 } // namespace

@@ -17,6 +17,7 @@ struct FeatureNoise
     double alongMore = 0;                               //!< along them: a standard deviation beside it, px
     double wrongShare = 0;                              //!< of all that are found
     std::vector<std::pair<double, double>> scales;      //!< of the features of matches
+    std::vector<double> unlike = {};                    //!< of the same; empty: 1
 };
 
 //! Of matches of a rig whose rendered images they come from.
@@ -40,6 +41,7 @@ inline void addNoise(const TexturedScene& scene, const RigModel& rig, const Scal
         if (!(cv::norm(off) < SAME))
             continue;
         noise.scales.push_back({ good.good.scales[0][i], good.good.scales[1][i] });
+        noise.unlike.push_back(good.good.unlike[i]);
         along += off.dot(off) - 2*residuals[i].squares - m.stds[0][i]*m.stds[0][i] - m.stds[1][i]*m.stds[1][i];
         right++;
     }
@@ -82,8 +84,10 @@ inline ScaledMatches drawMatches(const std::string& moment, const TexturedScene&
         const SurfaceHit hit = firstSurface(scene, rays2[i]);
         if (!hit.surface || cv::norm(rays2[i].at(hit.intersection.s) - Vec3d(seen1[i])) > SAME_PLACE)
             continue;
-        const auto scales = noise.scales[(int)random.uniform(0, noise.scales.size() - 1e-9)];
-        const double std1 = noise.noise.stdOf(scales.first), std2 = noise.noise.stdOf(scales.second);
+        const int kind = (int)random.uniform(0, noise.scales.size() - 1e-9);
+        const auto scales = noise.scales[kind];
+        const double unlike = noise.unlike.empty() ? 1 : noise.unlike[kind];
+        const double std1 = noise.noise.stdOf(scales.first, unlike), std2 = noise.noise.stdOf(scales.second, unlike);
         Point2d curve = along[i] - second[i];
         curve *= 1/cv::norm(curve);
         Point2d p2 = second[i] + Point2d(random.normal(std2), random.normal(std2)) + random.normal(noise.alongMore)*curve;
@@ -92,10 +96,55 @@ inline ScaledMatches drawMatches(const std::string& moment, const TexturedScene&
         result.matches.names.push_back({ moment, std::to_string(result.size() + 1) });
         result.matches.pixels[0].push_back(first[i] + Point2d(random.normal(std1), random.normal(std1)));
         result.matches.pixels[1].push_back(p2);
+        result.unlike.push_back(unlike);
         result.scales[0].push_back(scales.first);
         result.scales[1].push_back(scales.second);
     }
     return result;
+}
+
+//! What is seen.
+struct Seen
+{
+    int moments = 20, count = 3000;
+    bool isWall = false;                        //!< and nothing before it
+    double moving = 0;                          //!< share of the image's width: things that moved between the images of a pair, px below
+    int reflected = 0;                          //!< features of a reflection on the pane, at the same place in all images
+};
+
+inline TexturedScene wallOf(scenes::Random& random)
+{
+    TexturedScene wall;
+    const Vec3d normal(random.uniform(-0.2, 0.2), random.uniform(-0.2, 0.2), -1);
+    wall.surfaces.push_back(std::make_shared<Plane>(Vec3d(0, 0, 900), cv::normalize(normal), Vec3d(1, 1, 1)));
+    return wall;
+}
+
+inline ScaledMatches drawSeen(Rig& rig, const Seen& seen, const FeatureNoise& noise)
+{
+    const double MOVED = 5, BESIDE = 4;         // px
+    ScaledMatches all, reflection;
+    if (seen.reflected > 0)
+        reflection = drawMatches("", roomOf(rig.random), rig.truth, noise, seen.reflected, rig.random);
+    const double beside = rig.random.uniform(-BESIDE, BESIDE);
+    for (int m = 0; m < seen.moments; m++)
+    {
+        ScaledMatches ofMoment = drawMatches(std::to_string(m), seen.isWall ? wallOf(rig.random) : roomOf(rig.random), rig.truth, noise,
+                                             seen.count/seen.moments, rig.random);
+        const Point2d moved(rig.random.uniform(-MOVED, MOVED), rig.random.uniform(-MOVED, MOVED));
+        for (int i = 0; i < ofMoment.size(); i++)
+            if (ofMoment.matches.pixels[0][i].x < seen.moving*rig.truth.cameras[0]->imageSize().width)
+                ofMoment.matches.pixels[1][i] += moved;
+        all.add(ofMoment);
+        for (int i = 0; i < reflection.size(); i++)
+            reflection.matches.names[i].image = std::to_string(m);
+        ScaledMatches here = reflection;
+        for (int i = 0; i < here.size(); i++)
+            here.matches.pixels[1][i] += Point2d(rig.random.normal(0.1), beside + rig.random.normal(0.1));
+        if (here.size() > 0)
+            all.add(here);
+    }
+    return all;
 }
 
 } // namespace match_scene

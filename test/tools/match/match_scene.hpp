@@ -201,6 +201,13 @@ inline std::vector<Point2d> truePartners(const TexturedScene& scene, const RigMo
     return partners;
 }
 
+inline SceneMatcher matcherOf(const Calibration& calibration)
+{
+    SceneOptions options;
+    options.depth = DEPTH;
+    return SceneMatcher(calibration, options);
+}
+
 } // namespace match_scene
 
 #endif // REFRACT_TEST_MATCH_SCENE_HPP

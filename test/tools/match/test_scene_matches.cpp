@@ -16,13 +16,6 @@ using namespace match_scene;
 
 namespace {
 
-SceneMatcher matcherOf(const Calibration& calibration)
-{
-    SceneOptions options;
-    options.depth = DEPTH;
-    return SceneMatcher(calibration, options);
-}
-
 //! Matches against the truth.
 struct Truth
 {
@@ -162,6 +155,7 @@ TEST_CASE("Three cameras have chains, and the one that turned is named", "[tools
     const ValueAboutAxis& aboutX = named->values[0].aboutAxes[0];
     CHECK(std::abs(aboutX.value - 0.05) < 4*aboutX.std);
     CHECK(aboutX.std < 0.005);
+    CHECK(result.mayHaveTurned == std::vector<int>{ 2 });       // two others tell which
 }
 
 // TRIALS=50 refract_tools_tests "[scene-reach]": what checks by scenes reach, pairs of 640x512.

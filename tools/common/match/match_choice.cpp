@@ -51,12 +51,13 @@ std::vector<double> ranksOfDepth(const Matches& matches, const RigModel& rig)
 }
 
 //! Matches by where they are in their first image.
-class Taken
+class Places
 {
 public:
-    explicit Taken(const Matches& matches) : matches_(matches) {}
+    explicit Places(const Matches& matches) : matches_(matches) {}
 
-    bool has(int point) const
+    //! One that was added is at the same place in all images, and is as the condition has it.
+    template<typename Condition> bool hasSame(int point, const Condition& condition) const
     {
         const Key key = keyOf(point);
         for (int y = -1; y <= 1; y++)
@@ -64,7 +65,7 @@ public:
             {
                 const auto cell = cells_.find({key[0], key[1] + x, key[2] + y});
                 if (cell != cells_.end() && std::any_of(cell->second.begin(), cell->second.end(), [&](int other) {
-                        return isSame(point, other); }))
+                        return condition(other) && isSame(point, other); }))
                     return true;
             }
         return false;
@@ -98,6 +99,7 @@ void ScaledMatches::add(const ScaledMatches& others)
     const int cameras = others.matches.cameraCount();
     matches.pixels.resize(cameras);
     scales.resize(cameras);
+    unlike.insert(unlike.end(), others.unlike.begin(), others.unlike.end());
     matches.names.insert(matches.names.end(), others.matches.names.begin(), others.matches.names.end());
     for (int c = 0; c < cameras; c++)
     {
@@ -115,6 +117,8 @@ ScaledMatches ScaledMatches::only(const std::vector<int>& points) const
     for (int i : points)
     {
         part.matches.names.push_back(matches.names[i]);
+        if (!unlike.empty())
+            part.unlike.push_back(unlike[i]);
         for (int c = 0; c < matches.cameraCount(); c++)
         {
             part.matches.pixels[c].push_back(matches.pixels[c][i]);
@@ -126,6 +130,17 @@ ScaledMatches ScaledMatches::only(const std::vector<int>& points) const
     return part;
 }
 
+std::vector<uchar> recurring(const ScaledMatches& all)
+{
+    Places places(all.matches);
+    for (int i = 0; i < all.size(); i++)
+        places.add(i);
+    std::vector<uchar> recurs;
+    for (int i = 0; i < all.size(); i++)
+        recurs.push_back(places.hasSame(i, [&](int other) { return all.matches.names[other].image != all.matches.names[i].image; }));
+    return recurs;
+}
+
 std::vector<int> spreadChoice(const ScaledMatches& all, const RigModel& rig, int count)
 {
     const std::vector<double> ranks = ranksOfDepth(all.matches, rig);
@@ -133,12 +148,12 @@ std::vector<int> spreadChoice(const ScaledMatches& all, const RigModel& rig, int
     for (int i = 0; i < all.size(); i++)
         order.push_back(i);
     std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return scaleOf(all, a) < scaleOf(all, b); });
-    Taken taken(all.matches);
+    Places taken(all.matches);
     std::map<std::array<int, 4>, int> inCell;
     std::vector<std::pair<int, int>> chosen;        // how many its cell had before, and which
     for (int i : order)
     {
-        if (taken.has(i))
+        if (taken.hasSame(i, [](int) { return true; }))
             continue;
         taken.add(i);
         const int c = firstCamera(all.matches, i);

@@ -16,42 +16,57 @@ namespace {
 
 const double RARE = 1e-4;               // of right matches: taken for a wrong one
 
-//! Of right matches: v = floor^2 + share^2 s^2 by Fisher scoring, each of the two 0 where the likelihood would have it below.
-MatchNoise likeliestNoise(const std::vector<MatchResidual>& residuals)
+const int NUMBERS = 3;                  // of the noise
+
+Vec3d rowOf(const MatchResidual& r) { return Vec3d(1., r.scale2, r.scale2*r.unlike); }
+
+Vec3d squaresOf(const MatchNoise& noise)
 {
-    const int ITERATIONS = 50;
-    double squares = 0., scales2 = 0.;
-    int count = 0;
-    for (const MatchResidual& r : residuals)
+    return Vec3d(noise.floor*noise.floor, noise.share*noise.share, noise.unlikeShare*noise.unlikeShare);
+}
+
+//! x >= 0 with the least x^T H x - 2 g^T x: the best of all choices of which are 0.
+Vec3d leastNonnegative(const Matx33d& H, const Vec3d& g)
+{
+    Vec3d best;
+    double least = 0.;
+    for (int choice = 1; choice < 1 << NUMBERS; choice++)
     {
-        squares += r.squares;
-        scales2 += r.count*r.scale2;
-        count += r.count;
-    }
-    if (count == 0)
-        return {};
-    const double LEAST = 1e-12;         // px^2: exact pixels have no noise
-    double a = 0.5*squares/count, b = 0.5*squares/scales2;
-    for (int iteration = 0; iteration < ITERATIONS; iteration++)
-    {
-        Matx22d H;
-        Vec2d g;
-        for (const MatchResidual& r : residuals)
+        Matx33d part = H;
+        Vec3d of = g;
+        for (int i = 0; i < NUMBERS; i++)
+            for (int k = 0; k < NUMBERS && !(choice >> i & 1); k++)
+            {
+                part(i, k) = part(k, i) = i == k;
+                of[i] = 0.;
+            }
+        const Vec3d x = part.solve(of, DECOMP_SVD);
+        const double value = x.dot(H*x) - 2.*g.dot(x);
+        if (x[0] >= 0. && x[1] >= 0. && x[2] >= 0. && value < least)
         {
-            const double v = std::max(LEAST, a + b*r.scale2), weight = 1./(v*v);
-            const Vec2d row(1., r.scale2);
-            H += r.count*weight*(row*row.t());
-            g += weight*r.squares*row;
+            best = x;
+            least = value;
         }
-        const Vec2d best = H.solve(g, DECOMP_CHOLESKY);
-        a = std::max(0., best[0]);
-        b = std::max(0., best[1]);
-        if (a <= 0.)
-            b = std::max(0., g[1]/H(1, 1));
-        else if (b <= 0.)
-            a = std::max(0., g[0]/H(0, 0));
     }
-    return {std::sqrt(a), std::sqrt(b)};
+    return best;
+}
+
+//! A step of Fisher scoring. @param right probability of each residual that it is of a right match
+MatchNoise likelierNoise(const std::vector<MatchResidual>& residuals, const std::vector<double>& right, const MatchNoise& noise)
+{
+    const double LEAST = 1e-12;         // px^2: exact pixels have no noise
+    Matx33d H;
+    Vec3d g;
+    for (size_t i = 0; i < residuals.size(); i++)
+    {
+        const MatchResidual& r = residuals[i];
+        const double v = std::max(LEAST, noise.varianceOf(r)), weight = right[i]/(v*v);
+        const Vec3d row = rowOf(r);
+        H += r.count*weight*(row*row.t());
+        g += weight*r.squares*row;
+    }
+    const Vec3d x = leastNonnegative(H, g);
+    return {std::sqrt(x[0]), std::sqrt(x[1]), std::sqrt(x[2])};
 }
 
 //! Half of all residuals are below what the median of chi^2 has with it; the same at all scales.
@@ -65,14 +80,17 @@ MatchNoise noiseOfMedian(const std::vector<MatchResidual>& residuals)
     if (all.empty())
         return {};
     std::nth_element(all.begin(), all.begin() + all.size()/2, all.end());
-    return {std::sqrt(all[all.size()/2]/MEDIAN), 0.};
+    return {std::sqrt(all[all.size()/2]/MEDIAN)};
 }
 
 } // namespace
 
-double MatchNoise::stdOf(double scale) const { return std::hypot(floor, share*scale); }
+double MatchNoise::stdOf(double scale, double unlike) const
+{
+    return std::sqrt(floor*floor + (share*share + unlikeShare*unlikeShare*unlike)*scale*scale);
+}
 
-double MatchNoise::varianceOf(const MatchResidual& residual) const { return floor*floor + share*share*residual.scale2; }
+double MatchNoise::varianceOf(const MatchResidual& residual) const { return squaresOf(*this).dot(rowOf(residual)); }
 
 bool MatchResidual::isWithin(const MatchNoise& noise) const
 {
@@ -87,7 +105,7 @@ std::vector<MatchResidual> residualsOf(const ScaledMatches& scaled, const RigMod
     std::vector<MatchResidual> residuals;
     for (int i = 0; i < scaled.size(); i++)
     {
-        MatchResidual r{0., 0., 0};
+        MatchResidual r{0., 0., scaled.unlike.empty() ? 1. : scaled.unlike[i], 0};
         int cameras = 0;
         for (int c = 0; c < matches.cameraCount(); c++)
             if (matches.isSeen(c, i))
@@ -106,21 +124,58 @@ std::vector<MatchResidual> residualsOf(const ScaledMatches& scaled, const RigMod
 
 MatchNoise noiseOf(const std::vector<MatchResidual>& residuals)
 {
-    const int ROUNDS = 20;
+    const int ROUNDS = 100;
+    const double WIDE = 20., CONVERGED = 1e-4;      // standard deviations within which wrong ones are, at least
     MatchNoise noise = noiseOfMedian(residuals);
-    size_t before = 0;
+    double width2 = std::pow(WIDE*noise.floor, 2), wrongShare = 0.1;
+    for (const MatchResidual& r : residuals)
+        width2 = std::max(width2, r.count > 0 ? r.squares : 0.);
+    if (!(noise.floor > 0.))
+        return noise;
+    std::vector<double> right(residuals.size());
     for (int round = 0; round < ROUNDS; round++)
     {
-        std::vector<MatchResidual> right;
-        for (const MatchResidual& r : residuals)
-            if (r.isWithin(noise))
-                right.push_back(r);
-        if (right.size() == before)
+        double wrong = 0., all = 0.;
+        for (size_t i = 0; i < residuals.size(); i++)
+        {
+            const MatchResidual& r = residuals[i];
+            if (r.count == 0)
+                continue;
+            const double v = noise.varianceOf(r);
+            const double ofRight = (1. - wrongShare)*std::pow(2.*CV_PI*v, -0.5*r.count)*std::exp(-0.5*r.squares/v);
+            const double ofWrong = wrongShare*std::pow(4.*width2, -0.5*r.count);
+            right[i] = ofRight/(ofRight + ofWrong);
+            wrong += 1. - right[i];
+            all++;
+        }
+        wrongShare = wrong/all;
+        const MatchNoise better = likelierNoise(residuals, right, noise);
+        const double change = norm(squaresOf(better) - squaresOf(noise))/norm(squaresOf(better));
+        noise = better;
+        if (!(change > CONVERGED))
             break;
-        before = right.size();
-        noise = likeliestNoise(right);
     }
     return noise;
+}
+
+double unlikeLimitOf(const std::vector<MatchResidual>& residuals, const MatchNoise& noise)
+{
+    const int MOST_BINS = 16, ENOUGH = 50;          // matches of a bin
+    const double MANY = 0.03, CERTAIN = 3.;         // of a bin miss, more than of those that look alike; standard deviations
+    std::vector<const MatchResidual*> sorted;
+    for (const MatchResidual& r : residuals)
+        if (r.count > 0)
+            sorted.push_back(&r);
+    std::stable_sort(sorted.begin(), sorted.end(), [](const auto* a, const auto* b) { return a->unlike < b->unlike; });
+    const int count = (int)sorted.size(), bins = std::min(MOST_BINS, count/ENOUGH);
+    const auto missing = [&](int from, int to) {
+        return std::count_if(sorted.begin() + from, sorted.begin() + to, [&](const auto* r) { return !r->isWithin(noise); })
+               / (double)std::max(1, to - from); };
+    const double usual = missing(0, count/2), chance = CERTAIN*std::sqrt(usual*(1. - usual)*bins/std::max(1, count));
+    int end = count;
+    for (int bin = bins - 1; bin >= 3*bins/4 && missing(bin*count/bins, end) > usual + MANY + chance; bin--)
+        end = bin*count/bins;
+    return end < count && end > 0 ? sorted[end - 1]->unlike : std::numeric_limits<double>::infinity();
 }
 
 } // namespace tools

@@ -6,20 +6,22 @@
 
 #include "match/match_choice.hpp"
 
-/* How well features are placed. A large blob is placed less well than a small one:
+/* How well features are placed. A large blob is placed less well than a small one, and one that looks different in two images, as a surface
+seen from two sides does, less well than one that looks the same:
 
-    variance of a coordinate = floor^2 + (share scale)^2
+    variance of a coordinate = floor^2 + (share^2 + unlikeShare^2 unlike) scale^2
 
-Both numbers come from the residuals of the matches themselves, by maximum likelihood: they differ with texture, blur and light. */
+The three numbers come from the residuals of the matches themselves, by maximum likelihood: they differ with texture, blur and light. */
 namespace tools {
 
 struct MatchResidual;
 
 struct MatchNoise
 {
-    double floor = 0., share = 0.;
+    double floor = 0., share = 0., unlikeShare = 0.;
 
-    double stdOf(double scale) const;
+    //! @param unlike ScaledMatches::unlike
+    double stdOf(double scale, double unlike) const;
     double varianceOf(const MatchResidual& residual) const;     //!< of each of its numbers
 };
 
@@ -27,6 +29,7 @@ struct MatchNoise
 struct MatchResidual
 {
     double squares, scale2;         //!< px^2; mean of the squared scales
+    double unlike;                  //!< ScaledMatches::unlike
     int count;                      //!< of the numbers; 0: there is no such point
 
     bool isWithin(const MatchNoise& noise) const;
@@ -34,9 +37,13 @@ struct MatchResidual
 
 std::vector<MatchResidual> residualsOf(const ScaledMatches& scaled, const RigModel& rig);
 
-/** From the residuals of right matches and of some others, which are left out by the noise that the rest has. A right one is left out
-with a probability of 1e-4. */
+/** From the residuals of right matches and of others, which are anywhere: of each the probability that it is right, and of those that are
+the noise, in turn. */
 MatchNoise noiseOf(const std::vector<MatchResidual>& residuals);
+
+/** What looks so unlike in its images that many such matches miss their curves. These show how many of the others miss along them, where no
+residual shows it: beyond this, all are left out. */
+double unlikeLimitOf(const std::vector<MatchResidual>& residuals, const MatchNoise& noise);
 
 } // namespace tools
 

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 using namespace cv;
 using namespace cv::refract;
@@ -24,28 +25,48 @@ bool isTurn(const Change& change)
     return std::all_of(change.quantities.begin(), change.quantities.end(), [](const ChangedQuantity& q) { return q.unit == "degrees"; });
 }
 
-//! The parameters of the rig by the angles of all turns, a column each, in their standard deviations.
-MatrixXd byTurns(const RigModel& rig, const MayHaveTurned& turned)
+//! The parameters of the rig by those of all changes of the table, a column each, in their standard deviations; of these 0: not at all.
+MatrixXd byChanges(const RigModel& rig, const Vec3d& middle, const std::function<VectorXd(const Change&)>& stdsOf)
 {
-    const double STEP = 1e-3;           // cv::Rodrigues takes turns below 1e-5 for none
-    const VectorXd p = parametersOf(rig);
+    const double SMALL = 1e-3;          // of the range; cv::Rodrigues takes turns below 1e-5 for none
     std::vector<VectorXd> columns;
-    for (const Change& change : changesOf(rig, "", Vec3d(0, 0, 1)))
-        for (int i = 0; isTurn(change) && i < change.size(); i++)
+    for (const Change& change : changesOf(rig, "", middle))
+    {
+        const VectorXd stds = stdsOf(change), steps = SMALL*change.ranges();
+        for (int i = 0; i < change.size(); i++)
         {
+            if (!(stds[i] > 0.))
+                continue;
             VectorXd values[2];
             for (int side : {0, 1})
             {
                 RigModel moved = rig.clone();
-                change.apply(moved, (side ? STEP : -STEP)*VectorXd::Unit(change.size(), i));
+                change.apply(moved, (side ? steps[i] : -steps[i])*VectorXd::Unit(change.size(), i));
                 values[side] = parametersOf(moved);
             }
-            columns.push_back((change.isTilt ? turned.windows : turned.cameras)*DEGREE*(values[1] - values[0])/(2.*STEP));
+            columns.push_back(stds[i]*(values[1] - values[0])/(2.*steps[i]));
         }
-    MatrixXd D(p.size(), columns.size());
+    }
+    MatrixXd D(parametersOf(rig).size(), columns.size());
     for (size_t i = 0; i < columns.size(); i++)
         D.col(i) = columns[i];
     return D;
+}
+
+MatrixXd byTurns(const RigModel& rig, const MayHaveTurned& turned)
+{
+    return byChanges(rig, Vec3d(0, 0, 1), [&](const Change& change) {
+        const double std = !isTurn(change) ? 0. : change.isTilt ? turned.windows : turned.cameras;
+        return VectorXd(VectorXd::Constant(change.size(), std*DEGREE)); });
+}
+
+//! The calibration's covariance with what may have changed since, independently, a column each.
+Mat covarianceWith(const CheckInput& input, const MatrixXd& changes)
+{
+    MatrixXd C = input.covariance.empty() ? MatrixXd(MatrixXd::Zero(changes.rows(), changes.rows())) : toEigen(input.covariance);
+    addGram(changes.transpose(), 1., C);
+    C.triangularView<Eigen::StrictlyUpper>() = C.transpose();
+    return toMat(C);
 }
 
 //! Points all over what both cameras see.
@@ -73,11 +94,13 @@ std::vector<Point3d> pointsInBoth(const RigModel& rig, int first, int second, co
 
 Mat covarianceOfMoved(const CheckInput& input, const MayHaveTurned& turned)
 {
-    const MatrixXd D = byTurns(input.rig, turned);
-    MatrixXd C = input.covariance.empty() ? MatrixXd(MatrixXd::Zero(D.rows(), D.rows())) : toEigen(input.covariance);
-    addGram(D.transpose(), 1., C);
-    C.triangularView<Eigen::StrictlyUpper>() = C.transpose();
-    return toMat(C);
+    return covarianceWith(input, byTurns(input.rig, turned));
+}
+
+Mat covarianceOfChanged(const CheckInput& input, double depth, double share)
+{
+    return covarianceWith(input, byChanges(input.rig, Vec3d(0, 0, depth), [&](const Change& change) {
+        return VectorXd(share*change.ranges()); }));
 }
 
 double searchWidth(const CheckInput& input, int first, int second, const Vec2d& depth, double degrees)

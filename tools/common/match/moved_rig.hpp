@@ -18,6 +18,9 @@ struct MayHaveTurned
 /** The calibration's covariance, with every turn that the table of changes knows: of a camera about its own centre, of a window. */
 cv::Mat covarianceOfMoved(const CheckInput& input, const MayHaveTurned& turned);
 
+//! The same with every change of that table. @param depth of the scene in camera 1 @param share of each change's range (change.hpp)
+cv::Mat covarianceOfChanged(const CheckInput& input, double depth, double share);
+
 /** How far a match of two cameras may be from its epipolar curve, px: three standard deviations of what the calibration does not know,
 and the largest turn by so many degrees. @param depth z of the scene in the frame of camera 1 */
 double searchWidth(const CheckInput& input, int first, int second, const cv::Vec2d& depth, double degrees);

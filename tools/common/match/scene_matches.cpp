@@ -7,15 +7,13 @@
 #include "bundle/bundle_adjustment.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "match/chains.hpp"
+#include "match/moved_parts.hpp"
 #include "match/moved_rig.hpp"
 #include "match/pair_mistakes.hpp"
-#include "measure/chi_squared.hpp"
 #include "measure/measurement.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <tuple>
 
 using namespace cv;
 
@@ -26,6 +24,24 @@ namespace {
 const int FEWEST = 20;                  // matches, to tell good ones from others
 const double NaN = std::numeric_limits<double>::quiet_NaN();
 
+//! Of neighbours in a chain, the mean; of bits their number.
+double descriptorDistance(const std::vector<Features>& features, const Chain& chain)
+{
+    double sum = 0.;
+    int count = 0, last = -1;
+    for (int c = 0; c < (int)chain.size(); c++)
+        if (chain[c] >= 0)
+        {
+            if (last >= 0)
+            {
+                sum += norm(features[last].descriptors.row(chain[last]), features[c].descriptors.row(chain[c]), normOf(features[c]));
+                count++;
+            }
+            last = c;
+        }
+    return sum/std::max(1, count);
+}
+
 ScaledMatches matchesOfChains(const std::string& moment, const std::vector<Features>& features, const std::vector<Chain>& chains)
 {
     ScaledMatches result;
@@ -34,6 +50,7 @@ ScaledMatches matchesOfChains(const std::string& moment, const std::vector<Featu
     for (const Chain& chain : chains)
     {
         result.matches.names.push_back({moment, std::to_string(result.size() + 1)});
+        result.unlike.push_back(descriptorDistance(features, chain));
         for (size_t c = 0; c < features.size(); c++)
         {
             result.matches.pixels[c].push_back(chain[c] >= 0 ? features[c].pixels[chain[c]] : Point2d(NaN, NaN));
@@ -47,8 +64,8 @@ void setStds(const MatchNoise& noise, ScaledMatches& scaled)
 {
     scaled.matches.stds = scaled.scales;
     for (std::vector<double>& ofCamera : scaled.matches.stds)
-        for (double& std : ofCamera)
-            std = noise.stdOf(std);         // NaN stays
+        for (int i = 0; i < scaled.size(); i++)
+            ofCamera[i] = noise.stdOf(ofCamera[i], scaled.unlike.empty() ? 1. : scaled.unlike[i]);       // NaN stays
 }
 
 //! Of one moment of cameras 1 and 2; with a frame of camera 2 so many moments later.
@@ -82,6 +99,18 @@ std::string mistakeIn(const Calibration& calibration, std::vector<Frames>& camer
     return "";
 }
 
+//! In units of the usual distance of descriptors.
+void makeRelative(std::vector<double>& unlike)
+{
+    if (unlike.empty())
+        return;
+    std::vector<double> sorted = unlike;
+    std::nth_element(sorted.begin(), sorted.begin() + sorted.size()/2, sorted.end());
+    const double usual = sorted[sorted.size()/2];
+    for (double& of : unlike)
+        of = usual > 0. ? of/usual : 1.;
+}
+
 //! Of some of the matches.
 double rmsOf(const std::vector<MatchResidual>& residuals, const std::vector<int>& some)
 {
@@ -93,44 +122,6 @@ double rmsOf(const std::vector<MatchResidual>& residuals, const std::vector<int>
         count += residuals[i].count;
     }
     return count > 0 ? std::sqrt(squares/count) : NaN;
-}
-
-/* What moves between the images of a moment errs together, and may move so little across its curves that no match of it is a wrong one by
-itself: where all that is left of a part of an image misses by more than noise, it is left out as a whole. */
-std::vector<int> withoutMovedParts(const ScaledMatches& scaled, const RigModel& rig, const std::vector<MatchResidual>& residuals,
-                                   const MatchNoise& noise, const std::vector<int>& good)
-{
-    const int ACROSS = 4;               // parts
-    const double RARE = 1e-4, MUCH = 2.;        // of parts that stand still; mean square, of which less is no motion
-    struct Part
-    {
-        std::vector<int> matches;
-        double squares = 0.;            // over their variances
-        int count = 0;
-    };
-    std::map<std::tuple<std::string, int, int, int>, Part> parts;
-    for (int i : good)
-    {
-        int c = 0;
-        while (!scaled.matches.isSeen(c, i))
-            c++;
-        const Size size = rig.cameras[c]->imageSize();
-        const Point2d p = scaled.matches.pixels[c][i];
-        Part& part = parts[{scaled.matches.names[i].image, c, (int)(ACROSS*p.x/size.width), (int)(ACROSS*p.y/size.height)}];
-        part.matches.push_back(i);
-        part.squares += residuals[i].squares/noise.varianceOf(residuals[i]);
-        part.count += residuals[i].count;
-    }
-    std::vector<int> still;
-    for (const auto& named : parts)
-    {
-        const Part& part = named.second;
-        const bool hasMoved = part.squares > MUCH*part.count && upperTailChiSquared(part.count, part.squares) < RARE;
-        if (!hasMoved)
-            still.insert(still.end(), part.matches.begin(), part.matches.end());
-    }
-    std::sort(still.begin(), still.end());
-    return still;
 }
 
 //! Matches by chance are anywhere within the search, right ones within a few standard deviations.
@@ -216,29 +207,42 @@ ScaledMatches SceneMatcher::matchesOf(const std::string& moment, const std::vect
 }
 
 /* A part of the matches tells the rig as it is now, robustly, and the rig which of all others are right; these tell it again, each with
-the std of its scale. */
-std::vector<int> SceneMatcher::leaveOutWrong(ScaledMatches& scaled, SceneMatches& result) const
+the std of its scale, and so on until they stay the same. */
+std::vector<int> SceneMatcher::leaveOutWrong(ScaledMatches& scaled, const std::vector<int>& groups, SceneMatches& result) const
 {
-    const int ENOUGH = 400;
-    const BundleStart start{input_.rig, cv::refract::GLASS_FIX_NORMAL, covarianceOfMoved(input_, {MAY_HAVE_TURNED, MAY_HAVE_TURNED}), {}};
+    const int ENOUGH = 400, ROUNDS = 6;
+    const double SHARE = 0.03;          // of the range of each change: of angles MAY_HAVE_TURNED
+    const double depth = std::min(2.*options_.depth[0], 0.5*(options_.depth[0] + options_.depth[1]));
     const ScaledMatches some = scaled.only(spreadChoice(scaled, input_.rig, ENOUGH));
+    // With less free, wrong matches bend it less.
+    BundleStart start{input_.rig, cv::refract::GLASS_FIX_NORMAL, covarianceOfMoved(input_, {MAY_HAVE_TURNED, MAY_HAVE_TURNED}), {}};
     RigModel rig = adjustBundle(start, some.matches, {}, true).fit.rig;
+    start.covariance = covarianceOfChanged(input_, depth, SHARE);
     std::vector<int> good;
-    for (const bool isLast : {false, true})
+    std::vector<uchar> moved(scaled.size(), 0);
+    for (int round = 1;; round++)
     {
         const std::vector<MatchResidual> residuals = residualsOf(scaled, rig);
-        result.noise = noiseOf(residuals);
+        std::vector<MatchResidual> still;
+        for (int i = 0; i < scaled.size(); i++)
+            if (!moved[i])
+                still.push_back(residuals[i]);
+        result.noise = noiseOf(still);
         setStds(result.noise, scaled);
+        const std::vector<int> before = good;
+        const double unlikeLimit = unlikeLimitOf(residuals, result.noise);
         good.clear();
         for (int i = 0; i < scaled.size(); i++)
-            if (residuals[i].isWithin(result.noise))
+            if (residuals[i].isWithin(result.noise) && residuals[i].unlike <= unlikeLimit)
                 good.push_back(i);
-        good = withoutMovedParts(scaled, rig, residuals, result.noise, good);
+        // What errs together does so against a rig that nothing else bends any more.
+        moved = round == 1 ? inContradictedParts(scaled, rig, good) : inMovedParts(scaled, groups, rig, residuals, result.noise, good);
+        good.erase(std::remove_if(good.begin(), good.end(), [&](int i) { return moved[i]; }), good.end());
         result.residual = rmsOf(residuals, good);
-        if (!isLast)
-            rig = adjustBundle(start, scaled.only(good).matches, {}, false).fit.rig;
+        if (round > 2 && (round == ROUNDS || good == before))
+            return good;
+        rig = adjustBundle(start, scaled.only(good).matches, {}, false).fit.rig;
     }
-    return good;
 }
 
 SceneMatches SceneMatcher::goodOf(const ScaledMatches& all) const
@@ -247,17 +251,22 @@ SceneMatches SceneMatcher::goodOf(const ScaledMatches& all) const
     for (const CameraPair& pair : pairs_)
         result.search = std::max(result.search, pair.search);
     result.found = all.size();
-    ScaledMatches chosen = all.only(spreadChoice(all, input_.rig, options_.count));
+    const std::vector<int> choice = spreadChoice(all, input_.rig, options_.count), groupsOfAll = groupsOf(all);
+    std::vector<int> groups;
+    for (int i : choice)
+        groups.push_back(groupsOfAll[i]);
+    ScaledMatches chosen = all.only(choice);
+    makeRelative(chosen.unlike);
     result.chosen = chosen.size();
     if (result.chosen < FEWEST)
-        throw Failure(format("only %d matches were found, fewer than %d: more texture, light or images are wanted, or --depth is not that "
-                             "of the scene", result.chosen, FEWEST));
-    const std::vector<int> good = leaveOutWrong(chosen, result);
+        throw TooFewMatches(format("only %d matches were found, fewer than %d: more texture, light or images are wanted, or --depth is "
+                                   "not that of the scene", result.chosen, FEWEST));
+    const std::vector<int> good = leaveOutWrong(chosen, groups, result);
     result.good = chosen.only(good);
     result.leftOut = result.chosen - (int)good.size();
     if (result.good.size() < FEWEST || !(result.good.matches.usualStd() > 0.))
-        throw Failure(format("only %d of %d matches agree with each other: are the images of this rig, and of one moment each?",
-                             result.good.size(), result.chosen));
+        throw TooFewMatches(format("only %d of %d matches agree with each other: are the images of this rig, and of one moment each?",
+                                   result.good.size(), result.chosen));
     result.wrongLeft = wrongOf(result);
     return result;
 }
@@ -285,7 +294,10 @@ SceneMatches matchScene(const Calibration& calibration, std::vector<Frames>& cam
     }
     catch (const Failure& failure)
     {
-        throw Failure(failure.what() + mistakeIn(calibration, cameras, moments));
+        const std::string mistake = mistakeIn(calibration, cameras, moments);
+        if (mistake.empty())
+            throw;
+        throw Failure(failure.what() + mistake);
     }
     result.moments = (int)moments.size();
     const bool isNoFit = result.good.matches.usualStd() > NO_FEATURE;

@@ -5,6 +5,7 @@
 #define REFRACT_TOOLS_SCENE_MATCHES_HPP
 
 #include "assess/check_input.hpp"
+#include "console/failure.hpp"
 #include "console/frames.hpp"
 #include "match/match_choice.hpp"
 #include "match/match_noise.hpp"
@@ -51,6 +52,13 @@ struct SceneMatches
     double wrongLeft = 0.;          //!< expected among the good: as many are near a curve by chance
 };
 
+//! A plain wall, night: so few matches tell nothing, not even which of them are right.
+class TooFewMatches : public Failure
+{
+public:
+    using Failure::Failure;
+};
+
 /** The cameras of a calibration, and what is known of them. */
 class SceneMatcher
 {
@@ -61,11 +69,12 @@ public:
     ScaledMatches matchesOf(const std::string& moment, const std::vector<cv::Mat>& images) const;
 
     /** The good ones of all moments. The rig may have moved: it is estimated within what is known of it and what may have turned. Throws
-    Failure where there are too few to tell the good ones. */
+    TooFewMatches where there are too few to tell the good ones. */
     SceneMatches goodOf(const ScaledMatches& all) const;
 
 private:
-    std::vector<int> leaveOutWrong(ScaledMatches& scaled, SceneMatches& result) const;
+    //! @param groups of which some may err together
+    std::vector<int> leaveOutWrong(ScaledMatches& scaled, const std::vector<int>& groups, SceneMatches& result) const;
 
     CheckInput input_;
     SceneOptions options_;
