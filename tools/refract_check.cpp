@@ -43,6 +43,7 @@ what drift would be found).)";
 #include "console/colour.hpp"
 #include "console/file_output.hpp"
 #include "console/outputs.hpp"
+#include "console/table.hpp"
 #include <iostream>
 
 using namespace tools;
@@ -67,6 +68,25 @@ std::unique_ptr<KeptCheck> keptCheck(const CheckOptions& options, const Calibrat
     for (const std::string& sentence : kept->broken())
         command.warn("'" + options.history + "' is not as it was written: " + sentence);
     return kept;
+}
+
+//! Of a scene in which hardly anything is found, this says so as of one that tells too little.
+CheckImages newImages(const CheckOptions& o, const Calibration& calibration, const Command& command)
+{
+    try
+    {
+        return readCheckImages(o, calibration, command);
+    }
+    catch (const TooFewMatches& few)
+    {
+        const std::string why = format("these images would hardly show a turn by %g deg, so 'unchanged' cannot be said: ", o.detect)
+                                + few.what();
+        if (!o.summary.empty())
+            writeText(o.summary, Json({{"verdict", CANNOT_TELL}, {"why", why}}).text(1) + '\n');
+        if (!command.quiet())
+            std::cout << toned(std::cout, CANNOT_TELL, Tone::DOUBTFUL) << "\n\n";
+        throw Failure(why);
+    }
 }
 
 //! What is to be said of a check, and of all of its history.
@@ -122,7 +142,7 @@ int refract_check_main(int argc, char** argv)
                       {"--history", options.history, OUTPUT_SHARED}, {"--history-page", options.pageFile(), OUTPUT_SHARED}}, inputs);
         std::unique_ptr<KeptCheck> kept = keptCheck(options, asCalibrated, command);
         CheckInput input = inputOf(options, calibration);
-        const CheckImages images = readCheckImages(options, calibration, command);
+        const CheckImages images = newImages(options, calibration, command);
         if (kept)
             kept->requireNewImages(images);
         const CheckResult result = checkImages(options, images, calibration, input);

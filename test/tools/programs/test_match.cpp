@@ -156,10 +156,12 @@ TEST_CASE("A wall without texture cannot tell", "[programs][match][check]")
         random.fill(wall, cv::RNG::NORMAL, 120, 2);
         cv::imwrite(f / name, wall);
     }
-    const ToolResult result = check(CALIB, f / "l.png", f / "r.png");
+    const ToolResult result = check(CALIB, f / "l.png", f / "r.png", EXACT + " --summary=" + f / "s.json");
     INFO(result.err + result.out);
     CHECK(result.code == 1);
     CHECK(mentions(result.err, "matches"));
+    CHECK(result.out.compare(0, 11, "cannot tell") == 0);
+    CHECK(nlohmann::json::parse(readFile(f / "s.json"))["verdict"] == "cannot tell");
 }
 
 TEST_CASE("Images of cameras that are exchanged are named, and those of another rig", "[programs][match][check]")

@@ -89,7 +89,7 @@ std::string whyNot(const CheckResult& result, const CheckOptions& o, const Check
 std::string verdictOf(const CheckResult& result, const std::string& why)
 {
     const bool windows = std::any_of(result.windows.begin(), result.windows.end(), [](const WindowCheck& w) { return w.moved; });
-    return !why.empty() ? "cannot tell" : !result.changed ? "unchanged" : windows ? "moved" : "changed";
+    return !why.empty() ? CANNOT_TELL : !result.changed ? "unchanged" : windows ? "moved" : "changed";
 }
 
 } // namespace tools

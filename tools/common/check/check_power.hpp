@@ -14,6 +14,8 @@ namespace tools {
 @param input that was tested */
 std::string whyNot(const CheckResult& result, const CheckOptions& options, const CheckInput& input);
 
+const char CANNOT_TELL[] = "cannot tell";
+
 //! In a word or two. @param why of whyNot
 std::string verdictOf(const CheckResult& result, const std::string& why);
 
