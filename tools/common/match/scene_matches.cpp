@@ -239,7 +239,7 @@ std::vector<int> SceneMatcher::leaveOutWrong(ScaledMatches& scaled, const std::v
         moved = round == 1 ? inContradictedParts(scaled, rig, good) : inMovedParts(scaled, groups, rig, residuals, result.noise, good);
         good.erase(std::remove_if(good.begin(), good.end(), [&](int i) { return moved[i]; }), good.end());
         result.residual = rmsOf(residuals, good);
-        if (round > 2 && (round == ROUNDS || good == before))
+        if ((int)good.size() < FEWEST || (round > 2 && (round == ROUNDS || good == before)))
             return good;
         rig = adjustBundle(start, scaled.only(good).matches, {}, false).fit.rig;
     }
