@@ -25,6 +25,29 @@ double dampingAfter(double damping, double ratio)
     return std::max(LEAST, damping*(ratio > GOOD ? 1e-2 : ratio > FAIR ? 0.3 : 2));
 }
 
+//! Of the squares. @param before where the step begins
+double gainThere(ReducedCost& cost, double before)
+{
+    return cost.optimize() ? before - cost.squaredError() : -std::numeric_limits<double>::infinity();
+}
+
+/** Along a curved valley a step goes too far, and a damped one creeps: a part of it gains more than that, and needs no other factor. The
+cost is where it ends.
+@return the gain; not positive: no part has one to speak of */
+double gainOfPart(ReducedCost& cost, const Eigen::VectorXd& step, double before, double foretold)
+{
+    double gain = 0;
+    for (double part : { 0.5, 0.25 })
+    {
+        cost.restore();
+        cost.setStep(part*step);
+        gain = gainThere(cost, before);
+        if (gain > 0.25*part*(2 - part)*foretold)
+            return gain;
+    }
+    return std::min(gain, 0.);
+}
+
 } // namespace
 
 double DampedSteps::unseenOf(double squares, double equations, double rounding)
@@ -42,7 +65,8 @@ void DampedSteps::run(ReducedCost& cost)
     {
         const double squares = cost.squaredError();
         double foretold;
-        cost.setStep(dampedStep(cost.information(), damping, foretold));
+        const Eigen::VectorXd step = dampedStep(cost.information(), damping, foretold);
+        cost.setStep(step);
         // Too little to matter, or to be seen: of exact data, also of those that were printed with some digits, it is rounding.
         const double unseen = unseenOf(squares, equations, rounding);
         const double negligible = std::max(leastGain, std::min(0.1*change, LEFT_OF_NOISE/equations));
@@ -55,15 +79,15 @@ void DampedSteps::run(ReducedCost& cost)
             damping *= 1e-2;
             continue;
         }
-        const double gain = cost.optimize() ? squares - cost.squaredError() : -std::numeric_limits<double>::infinity();
-        CV_LOG_DEBUG(NULL, "refract: squares " << squares << ", damping " << damping << ", gain " << gain << " of " << foretold);
+        const double gain = gainThere(cost, squares);
+        CV_LOG_INFO(NULL, "refract: squares " << squares << ", damping " << damping << ", gain " << gain << " of " << foretold);
         isConverged = damping <= WEAK && std::abs(gain) <= change*squares;
         if (gain > 1e-3*foretold || (isConverged && gain >= 0))
         {
             damping = dampingAfter(damping, gain/foretold);
             growth = 4;
         }
-        else
+        else if (!(gainOfPart(cost, step, squares, foretold) > 0))
         {
             cost.restore();
             damping = std::max(FIRST_AFTER_FAILURE, growth*damping);

@@ -338,7 +338,7 @@ FitOutcome Minimization::run(const TermCriteria& criteria, double& damping, doub
         damping = 1/regions[0].radius;
         const bool isHeldAnew = region.outcome != ceres::FAILURE && isOnBound() && holdAtBounds();
         iterations_ += region.iterations;
-        CV_LOG_DEBUG(NULL, "refract: " << (turn ? "dogleg" : "Levenberg-Marquardt") << " to " << problem_.squaredError() << ", "
+        CV_LOG_INFO(NULL, "refract: " << (turn ? "dogleg" : "Levenberg-Marquardt") << " to " << problem_.squaredError() << ", "
                      << region.iterations << " iterations");
         left -= region.iterations;
         if (region.outcome == ceres::CONVERGENCE && !isHeldAnew && (region.leastGain > 0 || isAtMinimum()))
