@@ -112,7 +112,7 @@ double refractiveBundleAdjust(InputArray, InputArray, const std::vector<Ptr<Refr
                               InputOutputArrayOfArrays, InputOutputArrayOfArrays, InputOutputArrayOfArrays,
                               InputOutputArrayOfArrays, InputOutputArray, InputArray, OutputArray, OutputArray,
                               OutputArrayOfArrays, OutputArray, OutputArray, OutputArray, int, InputArrayOfArrays, TermCriteria,
-                              InputArrayOfArrays, InputArray, InputArray, double)
+                              InputArrayOfArrays, InputArray, InputArray, double, double)
 {
     throwWithoutCeres("refractiveBundleAdjust");
 }
