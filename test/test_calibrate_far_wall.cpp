@@ -29,12 +29,13 @@ struct Tank
 {
     double focal, distance;
     bool boards;                //!< eight flat boards, or one plate
+    double leastTilt = 0, mostTilt = 0.3;       //!< of the wall, radians
 };
 
-//! Cameras side by side that look at one place through one wall of acrylic, tilted by up to 17 degrees.
+//! Cameras side by side that look at one place through one wall of acrylic.
 RigTruth makeTank(const Tank& tank, int cameras, Random& random)
 {
-    const double tilt = random.uniform(0, 0.3), azimuth = random.uniform(0, 2*CV_PI), APART = 0.2, RANGE = 700;
+    const double tilt = random.uniform(tank.leastTilt, tank.mostTilt), azimuth = random.uniform(0, 2*CV_PI), APART = 0.2, RANGE = 700;
     const Vec3d normal(std::sin(tilt)*std::cos(azimuth), std::sin(tilt)*std::sin(azimuth), std::cos(tilt));
     const Matx33d K(tank.focal, 0, 1151.5, 0, tank.focal, 859.5, 0, 0, 1);
     RigTruth rig;
@@ -151,6 +152,20 @@ TEST_CASE("A far wall before a long lens is found from a window on the camera", 
             }
         }
     CHECK(refused <= 2);        // one plate, from both starts
+}
+
+TEST_CASE("A far wall that is tilted by 30 to 50 degrees is found from one that is not", "[calibrate][far_wall]")
+{
+    const Tank tank = { 2500, 350, true, 0.52, 0.87 };
+    for (int seed = 1; seed <= 8; seed++)
+    {
+        Random random(7300 + seed);
+        const RigTruth rig = makeTank(tank, 1, random);
+        TankCall call(rig, makeTankScene(tank, rig, random));
+        INFO("seed " << seed << ", normal " << rig.cameras[0]->window().normal);
+        CHECK(call.run(GLASS_FREE_DISTANCE) < 2*SIGMA);
+        CHECK(call.wrongBy(rig) < SURE);
+    }
 }
 
 TEST_CASE("Three standard deviations of a far wall's distance are where the squares are larger by nine variances", "[calibrate][far_wall]")

@@ -30,7 +30,13 @@ bool fit(Problem& problem, const TermCriteria& criteria, double& cost)
 {
     cost = std::numeric_limits<double>::infinity();
     if (FreeSpace(problem).count == 0)
-        return optimizeInner(problem, cost);
+    {
+        double squares;
+        const bool isPossible = optimizeInner(problem, squares);
+        if (isPossible)
+            cost = squares;
+        return isPossible;
+    }
     const FitOutcome outcome = minimize(problem, criteria);
     if (outcome.isUsable())
         cost = problem.squaredError();

@@ -18,9 +18,29 @@ namespace {
 const int FEW_VIEWS = 8;
 const size_t LIKELY_TILTS = 4;
 
-//! The given window, and the best few of two rings of tilts, all as they are: only the poses behind each are fitted.
-std::vector<RigStart> likelyTilts(const RigStart& given, const RigViews& views)
+//! A steeply tilted window in place of the given one; poses are found behind each.
+std::vector<RigStart> steepTilts(const Rig& given, const RigViews&)
 {
+    std::vector<RigStart> all;
+    for (const WindowPlace& place : placesAround(given.cameras[0].window(), STEEP_TILTS.tilt, STEEP_TILTS.count, STEEP_TILTS.first))
+    {
+        all.push_back({ given, {} });
+        setPlace(all.back().rig, 0, place);
+    }
+    return all;
+}
+
+//! Detected corners err by less: of a coordinate.
+bool leavesMoreThanNoise(const Minimum& minimum)
+{
+    const double NOISE = 0.6;       // px
+    return !(minimum.cost < NOISE*NOISE*minimum.freedom);
+}
+
+//! The given window, and the best few of two rings of tilts, all as they are: only the poses behind each are fitted.
+std::vector<RigStart> likelyTilts(const Rig& rig, const RigViews& views)
+{
+    const RigStart given = { rig, {} };
     const std::vector<Stage> look(1, { FEW_VIEWS, COARSE, LIKELY_TILTS });
     const Minimum placed = multiStart({ given }, look, views, GLASS_FIX_NORMAL)[0];
     const RigStart& first = std::isfinite(placed.cost) ? placed : given;    // poses behind one window are near those behind another
@@ -73,22 +93,33 @@ RigViews viewsThrough(const RigViews& views, int camera, std::vector<int>& which
 
 std::vector<Minimum> windowMinima(const Camera& camera, const RigViews& views, int flags)
 {
-    const RigStart given = { { { camera }, { 0 }, { Pose() } }, std::vector<Pose>() };
-    std::vector<RigStart> starts = likelyTilts(given, views);
+    std::vector<Rig> rigs(1, { { camera }, { 0 }, { Pose() } });
     std::vector<Stage> stages(1, { FEW_VIEWS, COARSE });
     if (views.count() > FEW_VIEWS)
         stages.push_back({ ALL_VIEWS, COARSE });
     if (flags & GLASS_FREE_DISTANCE)
     {
-        for (const Rig& rig : atOtherDistances(given.rig, views))
-            for (const RigStart& start : likelyTilts({ rig, {} }, views))
-                starts.push_back(start);
+        const std::vector<Rig> others = atOtherDistances(rigs[0], views);
+        rigs.insert(rigs.end(), others.begin(), others.end());
         Stage first = FIRST_OF_MANY;
         first.views = FEW_VIEWS;        // of which the poses are known
         stages.insert(stages.begin(), first);
     }
     flags &= GLASS_FREE_DISTANCE;
-    const std::vector<Minimum> minima = multiStart(starts, stages, views, flags);
+    const auto minimaFrom = [&](std::vector<RigStart> (*startsOf)(const Rig&, const RigViews&)) {
+        std::vector<RigStart> starts;
+        for (const Rig& rig : rigs)
+            for (const RigStart& start : startsOf(rig, views))
+                starts.push_back(start);
+        return multiStart(starts, stages, views, flags);
+    };
+    std::vector<Minimum> minima = minimaFrom(likelyTilts);
+    if (leavesMoreThanNoise(minima[0]))
+    {
+        const std::vector<Minimum> steep = minimaFrom(steepTilts);
+        minima.insert(minima.end(), steep.begin(), steep.end());
+        std::stable_sort(minima.begin(), minima.end());
+    }
     return hillClimb(minima, [&](const Minimum& best) { return withBetterPoses(best, views); }, views, flags);
 }
 
