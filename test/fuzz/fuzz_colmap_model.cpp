@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "console/failure.hpp"
-#include "formats/colmap_model.hpp"
+#include "colmap/colmap_model.hpp"
 #include "harness.hpp"
 #include "scratch.hpp"
 

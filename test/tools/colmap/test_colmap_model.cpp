@@ -4,7 +4,7 @@
 // Models of COLMAP as its documentation lays them out, there and back.
 #include "colmap/survey.hpp"
 #include "console/failure.hpp"
-#include "formats/colmap_model.hpp"
+#include "colmap/colmap_model.hpp"
 #include "colmap/colmap_files.hpp"
 
 using namespace tools;
@@ -185,6 +185,8 @@ TEST_CASE("What is wrong with a model of COLMAP is said in a sentence", "[colmap
     saved(binary, "points3D.bin", bytesOf(binary/"points3D.bin") + "x");
     CHECK_THAT(modelRefusal(binary.path().string()), Contains("1 bytes follow its last record"));
     saveBinary(binary);
+    saved(binary, "rigs.bin", raw<uint64_t>(1) + raw<uint32_t>(1) + raw<uint32_t>(1) + raw<int32_t>(7) + raw<uint32_t>(1));
+    CHECK_THAT(modelRefusal(binary.path().string()), Contains("rigs.bin' looks like COLMAP's, but '7' is no sensor"));
     std::filesystem::remove(binary/"points3D.bin");
     CHECK_THAT(modelRefusal(binary.path().string()), Contains("there is no '" + binary/"points3D.bin"));
 }

@@ -10,6 +10,7 @@
 #include "console/median.hpp"
 #include "console/outputs.hpp"
 #include "console/progress.hpp"
+#include "formats/colmap_cameras.hpp"
 
 #include <opencv2/imgproc.hpp>
 #include <algorithm>

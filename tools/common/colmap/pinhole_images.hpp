@@ -5,7 +5,7 @@
 #define REFRACT_TOOLS_PINHOLE_IMAGES_HPP
 
 #include "calibrate/calib_file.hpp"
-#include "formats/colmap_model.hpp"
+#include "colmap/colmap_model.hpp"
 
 /* Images as pinholes without windows would have taken them, for programs that know no other camera. */
 namespace tools {

@@ -4,6 +4,7 @@
 #include "colmap/survey.hpp"
 #include "console/failure.hpp"
 #include "console/view_names.hpp"
+#include "formats/colmap_cameras.hpp"
 
 #include <algorithm>
 #include <cmath>

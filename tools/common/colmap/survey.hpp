@@ -5,7 +5,7 @@
 #define REFRACT_TOOLS_SURVEY_HPP
 
 #include "calibrate/rig_model.hpp"
-#include "formats/colmap_model.hpp"
+#include "colmap/colmap_model.hpp"
 
 /* Images that a calibrated rig took while it moved through a scene, as a model of COLMAP has them: a list of observations. */
 namespace tools {

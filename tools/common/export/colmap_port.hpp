@@ -4,7 +4,7 @@
 #ifndef REFRACT_TOOLS_COLMAP_PORT_HPP
 #define REFRACT_TOOLS_COLMAP_PORT_HPP
 
-#include "formats/colmap_model.hpp"
+#include "colmap/colmap_model.hpp"
 #include <opencv2/refract.hpp>
 
 namespace tools {

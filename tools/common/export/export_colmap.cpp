@@ -3,6 +3,7 @@
 
 #include "export/colmap_port.hpp"
 #include "export/export_files.hpp"
+#include "formats/colmap_cameras.hpp"
 
 #include <opencv2/calib3d.hpp>
 #include <cmath>

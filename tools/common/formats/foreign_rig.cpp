@@ -2,13 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "formats/foreign_rig.hpp"
-#include "console/failure.hpp"
 #include "console/images.hpp"
 #include "console/lines.hpp"
 #include "console/numbers.hpp"
 #include "formats/foreign_file.hpp"
-#include "formats/keyed_cameras.hpp"
-#include "formats/notations.hpp"
 
 #include <algorithm>
 #include <cstring>
@@ -19,16 +16,16 @@
 
 namespace tools {
 
-using cv::FileNode;
-using cv::FileStorage;
 using cv::Mat;
+using cv::format;
+using cv::refract::RefractiveCamera;
 
 namespace {
 
 bool begins(const ForeignFile& file, const char* with) { return file.bytes.compare(0, std::strlen(with), with) == 0; }
 
 //! What cv::FileStorage has read.
-Json treeOf(const FileNode& node, int depth)
+Json treeOf(const cv::FileNode& node, int depth)
 {
     const int DEEPEST = 20;
     if (node.isInt() || node.isReal())
@@ -38,7 +35,7 @@ Json treeOf(const FileNode& node, int depth)
     if (depth > DEEPEST || (!node.isMap() && !node.isSeq()))
         return nullptr;
     Json json = node.isMap() ? Json::object() : Json::array();
-    for (const FileNode& item : node)
+    for (const cv::FileNode& item : node)
         node.isMap() ? json.set(item.name(), treeOf(item, depth + 1)) : json.append(treeOf(item, depth + 1));
     return json;
 }
@@ -47,7 +44,7 @@ Json readXml(const ForeignFile& file)
 {
     try
     {
-        const FileStorage fs(file.name, FileStorage::READ);
+        const cv::FileStorage fs(file.name, cv::FileStorage::READ);
         return treeOf(fs.root(), 0);
     }
     catch (const cv::Exception& e)
@@ -56,70 +53,39 @@ Json readXml(const ForeignFile& file)
     }
 }
 
-//! NaN and Infinity, which JSON has none of but Python writes, become null, as others have it.
-std::string withoutNaN(const std::string& text)
-{
-    std::string result;
-    bool quoted = false;
-    for (size_t i = 0; i < text.size(); i++)
-    {
-        if (quoted && text[i] == '\\' && i + 1 < text.size())
-            result += text[i++];            // with what it escapes
-        else if (text[i] == '"')
-            quoted = !quoted;
-        size_t length = 0;
-        for (const char* const word : {"NaN", "Infinity", "-Infinity"})
-            if (!quoted && text.compare(i, std::strlen(word), word) == 0)
-                length = std::strlen(word);
-        result += length ? "null" : std::string(1, text[i]);
-        i += length ? length - 1 : 0;
-    }
-    return result;
-}
-
+//! NaN and Infinity, which JSON has none of but Python writes, become null, as others have it; in names, which are none here, too.
 Json readJson(const ForeignFile& file)
 {
-    std::istringstream in(withoutNaN(file.bytes));
+    std::string text = file.bytes;
+    for (const std::string word : {"-Infinity", "Infinity", "NaN"})
+        for (size_t at = text.find(word); at != std::string::npos; at = text.find(word, at))
+            text.replace(at, word.size(), "null");
+    std::istringstream in(text);
     return Json::read(in);
 }
 
-/* Files of names and values: what tells them, and how they become a tree. Whatever is text at last may be YAML. */
-struct Notation
-{
-    const char* name;
-    bool (*is)(const ForeignFile& file);
-    Json (*read)(const ForeignFile& file);
-    bool isOurs;                //!< the notations of refract's own files, which the module reads
-};
-
-bool isText(const ForeignFile& file) { return file.bytes.find('\0') == std::string::npos; }
-
-const Notation NOTATIONS[] = {
-    {"NumPy's archive", [](const ForeignFile& f) { return begins(f, "PK\x03\x04"); },
-     [](const ForeignFile& f) { return readNpz(f.bytes); }, false},
-    {"MATLAB's file", [](const ForeignFile& f) { return begins(f, "MATLAB 5.0 MAT-file"); },
-     [](const ForeignFile& f) { return readMat(f.bytes); },
-     false},
-    {"XML", [](const ForeignFile& f) { return begins(f, "<?xml"); }, readXml, true},
-    {"JSON", [](const ForeignFile& f) { return !f.firstLine().empty() && f.firstLine()[0] == '{'; }, readJson, true},
-    {"YAML", isText, [](const ForeignFile& f) { return readYaml(f.bytes); }, true}};
-
-//! Files of lines or bytes.
+//! What tells the files of a format, and how they become a rig, or else a tree of names and values.
 struct Format
 {
     const char* name;
     bool (*is)(const ForeignFile& file);
-    ForeignRig (*read)(const ForeignFile& file);
+    ForeignRig (*rigOf)(const ForeignFile& file);
+    Json (*treeOf)(const ForeignFile& file);
+    bool isOurs;                //!< so are refract's own files, which the module reads
 };
 
-ForeignRig refuseHdf(const ForeignFile&) { throw Failure("files of version 7.3 are not read: save it with save -v7"); }
-
+// Whatever is text at last may be YAML.
 const Format FORMATS[] = {
-    {"MATLAB's file", [](const ForeignFile& f) { return begins(f, "MATLAB 7.3"); }, refuseHdf},
-    {"OpenLPT's camera", isOpenLpt, readOpenLpt},
-    {"COLMAP's cameras.txt", isColmapText, readColmapText},
-    {"COLMAP's cameras.bin", isColmapBinary, readColmapBinary},
-    {"OpenPTV's .ori", isOpenPtv, readOpenPtv}};
+    {"OpenLPT's camera", isOpenLpt, readOpenLpt, nullptr, false},
+    {"COLMAP's cameras.txt", isColmapText, readColmapText, nullptr, false},
+    {"COLMAP's cameras.bin", isColmapBinary, readColmapBinary, nullptr, false},
+    {"OpenPTV's .ori", isOpenPtv, readOpenPtv, nullptr, false},
+    {"NumPy's archive", [](const ForeignFile& f) { return begins(f, "PK\x03\x04"); }, nullptr, readNpz, false},
+    {"MATLAB's file", [](const ForeignFile& f) { return begins(f, "MATLAB 5.0 MAT-file") || begins(f, "MATLAB 7.3"); }, nullptr,
+     readMat, false},
+    {"XML", [](const ForeignFile& f) { return begins(f, "<?xml"); }, nullptr, readXml, true},
+    {"JSON", [](const ForeignFile& f) { return f.firstLine().compare(0, 1, "{") == 0; }, nullptr, readJson, true},
+    {"YAML", [](const ForeignFile& f) { return f.bytes.find('\0') == std::string::npos; }, nullptr, readYaml, true}};
 
 //! What the module reads by itself: a matrix as cv::FileStorage writes it, or what only refract writes.
 bool isOwn(const Json& file)
@@ -129,11 +95,6 @@ bool isOwn(const Json& file)
         || (isMatrix(file, "camera_matrix") && (file.has("distortion_coefficients") || numbersOf(file.at("camera_matrix")).size() != 9));
 }
 
-[[noreturn]] void refuse(const ForeignFile& file, const std::string& format, const std::string& what)
-{
-    throw Failure("'" + file.name + "' looks like " + format + ", but " + what);
-}
-
 //! "word:" or "word: value"
 bool hasKey(const std::string& line)
 {
@@ -141,62 +102,105 @@ bool hasKey(const std::string& line)
     return end > 0 && end != std::string::npos && line[end] == ':' && (end + 1 == line.size() || std::strchr(" \t\r", line[end + 1]));
 }
 
-//! Nothing: the module is to read it, and to say what it thinks of it.
-std::optional<ForeignRig> readNotation(const ForeignFile& file, const Notation& notation)
+/** No cameras: the module is to read it, and to say what it thinks of it.
+@param name receives whose file it looks like, before anything is thrown */
+ForeignRig readAs(const Format& format, const ForeignFile& file, std::string& name)
 {
-    std::string format = notation.name;
-    const bool isStorage = notation.isOurs && (begins(file, "%YAML") || begins(file, "<?xml") || begins(file, "{"));
+    if (format.rigOf)
+        return format.rigOf(file);
+    const bool isStorage = format.isOurs && (begins(file, "%YAML") || begins(file, "<?xml") || begins(file, "{"));
+    Json tree;
     try
     {
-        const Json tree = notation.read(file);
-        if (notation.isOurs && isOwn(tree))
-            return {};
-        ForeignRig rig = readKeyedCameras(tree, format);
-        if (!rig.cameras.empty())
-            return rig;
-        if (isStorage || !tree.isObject())
-            return {};
-        for (const std::string& name : tree.names())
-            if (!notation.isOurs && tree.at(name).isText())
-                throw Failure("'" + name + "' is an object of a class: save it as a struct, p = toStruct(" + name
-                              + "); save(file, 'p', '-v7')");
+        tree = format.treeOf(file);
     }
-    catch (const Failure& e)
-    {
-        refuse(file, format, e.what());
-    }
-    catch (const Json::Error& e)
+    catch (const Json::Error&)
     {
         // Any text may look like YAML, and cv::FileStorage's JSON has .Nan; but a text that is cut short was one.
         const size_t last = file.bytes.find_last_not_of(" \t\r\n");
-        const bool isOne = format == "JSON" ? file.bytes[last] != '}' : !isStorage && hasKey(file.firstLine());
-        if (format == notation.name && notation.isOurs && !isOne)
+        const bool isOne = name == "JSON" ? file.bytes[last] != '}' : !isStorage && hasKey(file.firstLine());
+        if (format.isOurs && !isOne)
             return {};
-        refuse(file, format, e.what());
+        throw;
     }
-    refuse(file, format, "there is no camera in it: camera_matrix and distortion_coefficients, or K and D, are missing");
+    if (format.isOurs && isOwn(tree))
+        return {};
+    const ForeignRig rig = readKeyedCameras(tree, name);
+    if (!rig.cameras.empty() || isStorage || !tree.isObject())
+        return rig;
+    for (const std::string& key : tree.names())
+        if (!format.isOurs && tree.at(key).isText())
+            throw Failure("'" + key + "' is an object of a class: save it as a struct, p = toStruct(" + key + "); save(file, 'p', '-v7')");
+    throw Failure("there is no camera in it: camera_matrix and distortion_coefficients, or K and D, are missing");
 }
 
 std::optional<ForeignRig> readOne(const ForeignFile& file)
 {
     if (file.bytes.find("glass_window") != std::string::npos)       // refract's own word: nothing to look for in a large file
         return {};
-    for (const Format& format : FORMATS)
-        if (format.is(file))
-            try
-            {
-                ForeignRig rig = format.read(file);
-                rig.format = format.name;
-                return rig;
-            }
-            catch (const Failure& e)
-            {
-                refuse(file, format.name, e.what());
-            }
-    for (const Notation& notation : NOTATIONS)
-        if (notation.is(file))
-            return readNotation(file, notation);
-    return {};
+    const auto format = std::find_if(std::begin(FORMATS), std::end(FORMATS), [&](const Format& f) { return f.is(file); });
+    if (format == std::end(FORMATS))
+        return {};
+    std::string name = format->name;
+    try
+    {
+        ForeignRig rig = readAs(*format, file, name);
+        rig.format = name;
+        return rig.cameras.empty() ? std::optional<ForeignRig>() : rig;
+    }
+    catch (const std::runtime_error& e)         // Failure, or Json::Error
+    {
+        throw Failure("'" + file.name + "' looks like " + name + ", but " + e.what());
+    }
+}
+
+//! The place of the first camera is the frame of all.
+void relateToFirst(ForeignRig& rig)
+{
+    const double EDITED = 1e-3;
+    const Mat R = rig.Rs[0].clone(), T = rig.Ts[0].clone();
+    for (size_t c = 0; c < rig.Rs.size(); c++)
+    {
+        const std::string camera = "camera " + std::to_string(c + 1);
+        if (!checkRange(rig.Rs[c]) || !checkRange(rig.Ts[c]) || !(norm(rig.Rs[c]*rig.Rs[c].t(), Mat::eye(3, 3, CV_64F)) < EDITED))
+            throw Failure("of " + rig.format + " the place of " + camera + " is no rotation and translation: was the file edited?");
+        rig.Rs[c] = rig.Rs[c]*R.t();
+        rig.Ts[c] = rig.Ts[c] - rig.Rs[c]*T;
+        if (determinant(rig.Rs[c]) < 0)
+            throw Failure("of " + rig.format + " " + camera + " has a mirrored frame, and the first has none: is its y axis turned?");
+    }
+    rig.Rs[0] = Mat::eye(3, 3, CV_64F);
+    rig.Ts[0] = Mat::zeros(3, 1, CV_64F);
+}
+
+//! All files of a numbered name, each of one camera.
+std::optional<ForeignRig> readNumbered(const std::string& pattern)
+{
+    ForeignRig rig;
+    for (const std::string& name : numberedFiles(pattern))
+    {
+        const std::optional<ForeignRig> one = readOne(contentsOf(name));
+        if (!one)
+            return {};
+        if (one->cameras.size() != 1)
+            throw Failure("'" + name + "' has several cameras: a numbered name is that of files of one");
+        rig.format = one->format;
+        rig.cameras.push_back(one->cameras[0]);
+        rig.Rs.insert(rig.Rs.end(), one->Rs.begin(), one->Rs.end());
+        rig.Ts.insert(rig.Ts.end(), one->Ts.begin(), one->Ts.end());
+    }
+    if (rig.Rs.size() != rig.cameras.size())
+        rig.Rs = rig.Ts = {};
+    return rig.cameras.empty() ? std::optional<ForeignRig>() : rig;
+}
+
+} // namespace
+
+void ForeignRig::add(const cv::Ptr<cv::refract::RefractiveCamera>& camera, const cv::Matx33d& cam_from_world, const cv::Vec3d& translation)
+{
+    cameras.push_back(camera);
+    Rs.push_back(Mat(cam_from_world, true));
+    Ts.push_back(Mat(translation, true));
 }
 
 ForeignFile contentsOf(const std::string& name)
@@ -213,70 +217,45 @@ ForeignFile contentsOf(const std::string& name)
     return file;
 }
 
-//! The place of the first camera is the frame of all.
-void relateToFirst(ForeignRig& rig)
+cv::Ptr<RefractiveCamera> makeCamera(const std::string& model, const cv::Matx33d& cameraMatrix, std::vector<double> coefficients,
+                                     const cv::Size& size)
 {
-    if (rig.Rs.size() != rig.cameras.size())
-    {
-        rig.Rs.clear();
-        rig.Ts.clear();
-    }
-    if (rig.Rs.empty())
-        return;
-    const double EDITED = 1e-3;
-    const Mat R = rig.Rs[0].clone(), T = rig.Ts[0].clone();
-    for (size_t c = 0; c < rig.Rs.size(); c++)
-    {
-        if (!checkRange(rig.Rs[c]) || !checkRange(rig.Ts[c]) || !(norm(rig.Rs[c]*rig.Rs[c].t(), Mat::eye(3, 3, CV_64F)) < EDITED))
-            throw Failure("of " + rig.format + " the place of camera " + std::to_string(c + 1) + " is no rotation and translation: was the "
-                          "file edited?");
-        rig.Rs[c] = rig.Rs[c]*R.t();
-        rig.Ts[c] = rig.Ts[c] - rig.Rs[c]*T;
-        if (determinant(rig.Rs[c]) < 0)
-            throw Failure("of " + rig.format + " camera " + std::to_string(c + 1) + " has a mirrored frame, and the first has none: is "
-                          "its y axis turned?");
-    }
-    rig.Rs[0] = Mat::eye(3, 3, CV_64F);
-    rig.Ts[0] = Mat::zeros(3, 1, CV_64F);
+    const std::vector<size_t> places = model == "fisheye" ? std::vector<size_t>{0, 4} : std::vector<size_t>{0, 4, 5, 8, 12, 14};
+    while (!coefficients.empty() && coefficients.back() == 0. && coefficients.size() > places.back())
+        coefficients.pop_back();
+    const auto fitting = std::lower_bound(places.begin(), places.end(), coefficients.size());
+    if (fitting == places.end())
+        throw Failure(format("its lens has %zu coefficients, more than OpenCV's model has", coefficients.size()));
+    coefficients.resize(*fitting, 0.);
+    return possible("lens", [&] {
+        const cv::Ptr<RefractiveCamera> camera = RefractiveCamera::createByName(model, cameraMatrix, coefficients);
+        camera->setImageSize(size);
+        return camera;
+    });
 }
 
-//! All files of a numbered name, each of one camera.
-std::optional<ForeignRig> readNumbered(const std::string& pattern)
+cv::Size imageSizeOf(double width, double height)
 {
-    std::optional<ForeignRig> rig;
-    for (const std::string& name : numberedFiles(pattern))
-    {
-        const std::optional<ForeignRig> one = readOne(contentsOf(name));
-        if (!one)
-            return {};
-        if (one->cameras.size() != 1)
-            throw Failure("'" + name + "' has several cameras: a numbered name is that of files of one");
-        if (!rig)
-            rig = ForeignRig();
-        rig->format = one->format;
-        rig->cameras.push_back(one->cameras[0]);
-        rig->Rs.insert(rig->Rs.end(), one->Rs.begin(), one->Rs.end());
-        rig->Ts.insert(rig->Ts.end(), one->Ts.begin(), one->Ts.end());
-    }
-    return rig;
+    const int LARGEST = 1 << 20;
+    if (!(width >= 1 && width <= LARGEST && height >= 1 && height <= LARGEST))
+        throw Failure(format("its image size is %gx%g", width, height));
+    return cv::Size((int)width, (int)height);
 }
 
-} // namespace
-
-void ForeignRig::add(const cv::Ptr<cv::refract::RefractiveCamera>& camera, const cv::Matx33d& cam_from_world, const cv::Vec3d& translation)
+std::vector<std::string> ForeignFile::lines() const
 {
-    cameras.push_back(camera);
-    Rs.push_back(Mat(cam_from_world, true));
-    Ts.push_back(Mat(translation, true));
+    std::vector<std::string> lines;
+    std::istringstream in(bytes);
+    for (std::string line; takeLine(in, line); )
+        if (line.find_first_not_of(" \t\r") != std::string::npos && line[line.find_first_not_of(" \t\r")] != '#')
+            lines.push_back(line);
+    return lines;
 }
 
 std::string ForeignFile::firstLine() const
 {
-    std::istringstream in(bytes.substr(0, 4096));
-    for (std::string line; takeLine(in, line); )
-        if (line.find_first_not_of(" \t\r") != std::string::npos && line[line.find_first_not_of(" \t\r")] != '#')
-            return line;
-    return "";
+    const std::vector<std::string> beginning = ForeignFile{name, bytes.substr(0, 4096)}.lines();
+    return beginning.empty() ? "" : beginning[0];
 }
 
 std::vector<double> leadingNumbers(const std::string& text, bool* whole)
@@ -299,9 +278,8 @@ std::vector<double> leadingNumbers(const std::string& text, bool* whole)
 std::optional<ForeignRig> readForeignRig(const std::string& filename)
 {
     std::optional<ForeignRig> rig = filename.find("%d") != std::string::npos ? readNumbered(filename) : readOne(contentsOf(filename));
-    if (!rig)
-        return {};
-    relateToFirst(*rig);
+    if (rig && !rig->Rs.empty())
+        relateToFirst(*rig);
     return rig;
 }
 

@@ -1,11 +1,12 @@
 // This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
 // SPDX-License-Identifier: Apache-2.0
 
-#include "formats/keyed_cameras.hpp"
-#include "console/failure.hpp"
-#include "formats/lens_maker.hpp"
+#include "formats/foreign_file.hpp"
+#include "formats/colmap_cameras.hpp"
 
+#include <opencv2/core/affine.hpp>
 #include <algorithm>
+#include <map>
 
 /* Programs write the same numbers by other names. A dialect is one way to name those of a camera; a file may have a camera at its top
 level, in maps and lists below it, and several beside each other whose names end in 1 and 2, or in left and right. */
@@ -26,6 +27,12 @@ const Names MATRICES = {"camera_matrix", "Camera_Matrix", "cameraMatrix", "Camer
                         "intrinsic_matrix", "matrix"};
 const Names DISTORTIONS = {"distortion_coefficients", "Distortion_Coefficients", "distCoeffs", "dist_coeffs", "dist_coeff", "distCoeff",
                            "distortion_coeffs", "DistCoeffs", "dist_coefs", "dist", "D", "distortionCoeff", "distortions", "distortion"};
+
+//! What other programs call OpenCV's lens models; DepthAI numbers them.
+const std::map<std::string, std::string> LENS_MODELS = {
+    {"plumb_bob", "opencv"}, {"rational_polynomial", "opencv"}, {"thin_prism", "opencv"}, {"opencv", "opencv"}, {"radtan", "opencv"},
+    {"brown", "opencv"}, {"none", "opencv"}, {"cameraType 0", "opencv"}, {"equidistant", "fisheye"}, {"fisheye", "fisheye"},
+    {"equi", "fisheye"}, {"kannala_brandt", "fisheye"}, {"cameraType 1", "fisheye"}};
 
 //! What names of cameras beside each other end in.
 const Names ENDINGS[] = {{""}, {"1", "2"}, {"_1", "_2"}, {"_left", "_right"}, {"Left", "Right"}, {"L", "R"}, {"_l", "_r"}, {"_L", "_R"},
@@ -56,36 +63,28 @@ Matx33d neededMatrix(const Json& map, const std::string& name) { return Matx33d(
 //! 0x0 where the file does not say.
 Size sizeIn(const Json& map)
 {
-    for (const auto& [width, height] : {std::make_pair("image_width", "image_height"), std::make_pair("width", "height"),
-                                        std::make_pair("nx", "ny")})
-        if (map.has(width) && map.has(height) && numbersOf(map.at(width)).size() == 1 && numbersOf(map.at(height)).size() == 1)
-            return imageSizeOf(numbersOf(map.at(width))[0], numbersOf(map.at(height))[0]);
+    std::vector<double> numbers;
+    for (const Names& names : {Names{"image_width", "image_height"}, Names{"width", "height"}, Names{"nx", "ny"}})
+        if (numbers.size() != 2 && map.has(names[0]) && map.has(names[1]))
+            numbers = numbersOf(Json::array({map.at(names[0]), map.at(names[1])}));
     const std::string both = nameIn(map, {"image_size", "imageSize", "resolution", "img_size", "size"}, "");
-    const std::vector<double> numbers = both.empty() ? std::vector<double>() : numbersOf(map.at(both));
+    if (numbers.size() != 2 && !both.empty())
+        numbers = numbersOf(map.at(both));
     return numbers.size() == 2 ? imageSizeOf(numbers[0], numbers[1]) : Size();
 }
 
-//! "opencv" or "fisheye" by what other programs call them; empty: the file does not say.
+//! "opencv" or "fisheye"; empty: the file does not say.
 std::string lensModelIn(const Json& map)
 {
-    const std::string key = nameIn(map, {"distortion_model", "lens_model", "distortion_type"}, "");
-    if (map.has("cameraType"))          // DepthAI
-    {
-        const double type = map.at("cameraType").asNumber();
-        if (type != 0 && type != 1)
-            throw Failure(cv::format("its cameraType %g is neither perspective (0) nor fisheye (1)", type));
-        return type == 0 ? "opencv" : "fisheye";
-    }
+    const std::string key = nameIn(map, {"cameraType", "distortion_model", "lens_model", "distortion_type"}, "");
     if (key.empty())
         return "";
-    const std::string model = map.at(key).asText();
-    for (const char* known : {"plumb_bob", "rational_polynomial", "thin_prism", "opencv", "radtan", "brown", "none"})
-        if (model == known)
-            return "opencv";
-    for (const char* known : {"equidistant", "fisheye", "equi", "kannala_brandt"})
-        if (model == known)
-            return "fisheye";
-    throw Failure("its " + key + " '" + model + "' has no equal among OpenCV's");
+    const Json& value = map.at(key);
+    const std::string said = value.isNumber() ? cv::format("%g", value.asNumber()) : value.asText();
+    const auto model = LENS_MODELS.find(value.isNumber() ? key + " " + said : said);
+    if (model == LENS_MODELS.end())
+        throw Failure("its " + key + " '" + said + "' has no equal among OpenCV's");
+    return model->second;
 }
 
 //! OpenCV's own names and those of programs that took them over.
@@ -96,15 +95,15 @@ Ptr<RefractiveCamera> readOpenCV(const Json& map, const std::string& ending)
     if (distortion.empty())
         throw Failure("it has a camera matrix without coefficients of distortion: name them distortion_coefficients, distCoeffs, "
                       "D or dist; of a lens without distortion five zeros");
-    std::vector<double> D = numbersOf(map.at(distortion));
-    const std::string said = lensModelIn(map);
-    const bool isBent = std::any_of(D.begin(), D.end(), [](double k) { return k != 0.; });
-    if (said.empty() && D.size() == 4 && isBent)
+    const Json& value = map.at(distortion);
+    const std::vector<double> D = numbersOf(value);
+    const std::string model = lensModelIn(map);
+    if (model.empty() && D.size() == 4 && std::count(D.begin(), D.end(), 0.) < 4)
         throw Failure("its " + distortion + " are four, and it does not say whether they are cv::fisheye's or k1, k2, p1, p2: add "
                       "distortion_model, equidistant or plumb_bob; the latter may have a fifth, 0, instead");
-    if (D.empty() && numbersOf(map.at(distortion)).empty() && !(map.at(distortion).isList() && map.at(distortion).items().empty()))
+    if (D.empty() && !(value.isList() && value.items().empty()))
         throw Failure("its " + distortion + " are not all numbers");
-    return makeCamera(said.empty() ? "opencv" : said, K, D, sizeIn(map));
+    return makeCamera(model.empty() ? "opencv" : model, K, D, sizeIn(map));
 }
 
 Ptr<RefractiveCamera> readKalibr(const Json& map, const std::string&)
@@ -115,7 +114,7 @@ Ptr<RefractiveCamera> readKalibr(const Json& map, const std::string&)
                       "pinhole-equi");
     const std::vector<double> p = neededNumbers(map, "intrinsics", 4);
     const std::vector<double> D = distortion == "none" ? std::vector<double>() : neededNumbers(map, "distortion_coeffs", 4);
-    return makeCamera(distortion == "equi" ? "fisheye" : "opencv", cameraMatrixOf(p[0], p[1], p[2], p[3]), D, sizeIn(map));
+    return makeCamera(lensModelIn(map), cameraMatrixOf(p[0], p[1], p[2], p[3]), D, sizeIn(map));
 }
 
 Ptr<RefractiveCamera> readCalibmar(const Json& map, const std::string&)
@@ -128,42 +127,38 @@ Ptr<RefractiveCamera> readCalibmar(const Json& map, const std::string&)
     return camera;
 }
 
-//! The toolbox of Bouguet, whose pixels count from 0.
+//! From focal lengths, centre and, if there is one, skew.
+Matx33d focalMatrix(const Json& map, const std::string& focal, const std::string& center, const std::string& skew)
+{
+    const std::vector<double> f = neededNumbers(map, focal, 2), c = neededNumbers(map, center, 2);
+    Matx33d K = cameraMatrixOf(f[0], f[1], c[0], c[1]);
+    K(0, 1) = map.has(skew) ? neededNumbers(map, skew, 1)[0] : 0.;
+    return K;
+}
+
+//! The toolbox of Bouguet, whose pixels count from 0, and whose skew is in focal lengths.
 Ptr<RefractiveCamera> readBouguet(const Json& map, const std::string& ending)
 {
-    const std::vector<double> f = neededNumbers(map, "fc" + ending, 2), c = neededNumbers(map, "cc" + ending, 2);
-    Matx33d K = cameraMatrixOf(f[0], f[1], c[0], c[1]);
-    if (map.has("alpha_c" + ending))
-        K(0, 1) = f[0]*neededNumbers(map, "alpha_c" + ending, 1)[0];
+    Matx33d K = focalMatrix(map, "fc" + ending, "cc" + ending, "alpha_c" + ending);
+    K(0, 1) *= K(0, 0);
     return makeCamera("opencv", K, neededNumbers(map, "kc" + ending, 5), sizeIn(map));
 }
 
 //! MATLAB's toolbox, as a struct; its pixels count from 1, its older matrices are meant for rows.
 Ptr<RefractiveCamera> readMatlab(const Json& map, const std::string&)
 {
-    Matx33d K = Matx33d::eye();
     if (map.has("MappingCoefficients"))
         throw Failure("MATLAB's fisheye model has no equal among OpenCV's");
-    if (map.has("IntrinsicMatrix"))
-        K = neededMatrix(map, "IntrinsicMatrix").t();
-    else if (map.has("K"))
-        K = neededMatrix(map, "K");
-    else
-    {
-        const std::vector<double> f = neededNumbers(map, "FocalLength", 2), c = neededNumbers(map, "PrincipalPoint", 2);
-        K = cameraMatrixOf(f[0], f[1], c[0], c[1]);
-        K(0, 1) = map.has("Skew") ? neededNumbers(map, "Skew", 1)[0] : 0.;
-    }
-    K(0, 2) -= 1.;
-    K(1, 2) -= 1.;
+    const Matx33d fromZero(1, 0, -1, 0, 1, -1, 0, 0, 1);
+    const Matx33d K = map.has("IntrinsicMatrix") ? neededMatrix(map, "IntrinsicMatrix").t() : map.has("K") ? neededMatrix(map, "K")
+        : focalMatrix(map, "FocalLength", "PrincipalPoint", "Skew");
     std::vector<double> D = numbersOf(map.at("RadialDistortion"));
     const std::vector<double> p = map.has("TangentialDistortion") ? neededNumbers(map, "TangentialDistortion", 2) : std::vector<double>(2);
     if (D.size() != 2 && D.size() != 3)
         throw Failure("its RadialDistortion must have 2 or 3 numbers");
     D.insert(D.begin() + 2, p.begin(), p.end());
-    const std::vector<double> rowsColumns = map.has("ImageSize") ? numbersOf(map.at("ImageSize")) : std::vector<double>();
-    const bool known = rowsColumns.size() == 2;
-    return makeCamera("opencv", K, D, known ? imageSizeOf(rowsColumns[1], rowsColumns[0]) : Size());
+    const std::vector<double> size = map.has("ImageSize") ? numbersOf(map.at("ImageSize")) : std::vector<double>();     // rows, columns
+    return makeCamera("opencv", fromZero*K, D, size.size() == 2 ? imageSizeOf(size[1], size[0]) : Size());
 }
 
 //! How a program names the numbers of a camera.
@@ -183,16 +178,11 @@ const Dialect DIALECTS[] = {
     {"ROS's camera_info", {"camera_matrix", "distortion_model"}, readOpenCV},
     {"DepthAI's calibration", {"intrinsicMatrix", "distortionCoeff"}, readOpenCV}};
 
-bool tells(const Dialect& dialect, const Json& map, const std::string& ending)
-{
-    return std::all_of(dialect.telling.begin(), dialect.telling.end(), [&](const std::string& name) { return map.has(name + ending); });
-}
-
 //! A camera whose names end so; null if there is none.
 Ptr<RefractiveCamera> cameraIn(const Json& map, const std::string& ending, std::string& format)
 {
     for (const Dialect& dialect : DIALECTS)
-        if (tells(dialect, map, ending))
+        if (std::all_of(dialect.telling.begin(), dialect.telling.end(), [&](const std::string& n) { return map.has(n + ending); }))
         {
             format = dialect.format;
             return dialect.read(map, ending);
@@ -205,13 +195,19 @@ Ptr<RefractiveCamera> cameraIn(const Json& map, const std::string& ending, std::
     return readOpenCV(map, ending);
 }
 
-typedef std::vector<std::pair<Ptr<RefractiveCamera>, const Json*>> Found;
+//! A camera, and the map that it is in.
+struct FoundCamera
+{
+    Ptr<RefractiveCamera> camera;
+    const Json* map;
+};
+typedef std::vector<FoundCamera> Found;
 
 //! Adds the cameras of this value and of those below it.
 void collect(const Json& json, int depth, Found& found, std::string& format)
 {
     const int DEEPEST = 5;
-    if (depth > DEEPEST || (!json.isObject() && !json.isList()))
+    if (depth > DEEPEST)
         return;
     const size_t before = found.size();
     for (const Names& endings : ENDINGS)
@@ -231,6 +227,9 @@ void collect(const Json& json, int depth, Found& found, std::string& format)
         collect(json.at(name), depth + 1, found, format);
 }
 
+//! From one camera's frame, or any that all share, to another's.
+typedef std::vector<cv::Affine3d> Places;
+
 //! Names of a rotation and a translation, and whether they are meant for rows.
 struct PlaceNames
 {
@@ -240,89 +239,75 @@ struct PlaceNames
 const PlaceNames PLACES[] = {{"R", "T", false}, {"R", "t", false}, {"rotation_matrix", "translation_vector", false},
                              {"Rot", "Trans", false}, {"RotationOfCamera2", "TranslationOfCamera2", true}};
 
-//! What this map itself says.
-bool placeIn(const Json& json, Matx33d& R, Vec3d& T)
+//! What this map itself says; empty: nothing.
+Places placeIn(const Json& json)
 {
     for (const PlaceNames& names : PLACES)
         if (json.has(names.R) && json.has(names.T))
         {
-            R = neededMatrix(json, names.R);
-            T = Vec3d(neededNumbers(json, names.T, 3).data());
-            R = names.forRows ? R.t() : R;
-            return true;
+            const Matx33d R = neededMatrix(json, names.R);
+            return {cv::Affine3d(names.forRows ? R.t() : R, Vec3d(neededNumbers(json, names.T, 3).data()))};
         }
-    return false;
+    return {};
 }
 
-//! The place of the second camera from the first, anywhere in the file but with the first.
-bool findPlace(const Json& json, const Json* first, int depth, Matx33d& R, Vec3d& T)
+//! Of the second camera from the first, anywhere in the file but in this map.
+Places findPlace(const Json& json, const Json* but, int depth)
 {
     const int DEEPEST = 3;
-    if (depth > DEEPEST || &json == first)
-        return false;
-    if (placeIn(json, R, T))
-        return true;
-    for (const std::string& name : json.names())
-        if (findPlace(json.at(name), first, depth + 1, R, T))
-            return true;
-    return false;
+    if (depth > DEEPEST || &json == but)
+        return {};
+    Places place = placeIn(json);
+    for (size_t i = 0; i < json.names().size() && place.empty(); i++)
+        place = findPlace(json.at(json.names()[i]), but, depth + 1);
+    return place;
 }
 
 //! Each camera from one frame, in its own map.
-bool findPlaces(const Found& found, ForeignRig& rig)
+Places ownPlaces(const Found& found)
 {
-    for (size_t c = 0; c < found.size(); c++)
-    {
-        Matx33d R;
-        Vec3d T;
-        if ((c > 0 && found[c].second == found[0].second) || !placeIn(*found[c].second, R, T))
-            return false;
-        rig.add(found[c].first, R, T);
-    }
-    return true;
+    Places places;
+    for (const FoundCamera& camera : found)
+        for (const cv::Affine3d& place : &camera == &found[0] || camera.map != found[0].map ? placeIn(*camera.map) : Places())
+            places.push_back(place);
+    return places;
 }
 
 //! Kalibr: each camera from the one before it.
-bool findChain(const Found& found, ForeignRig& rig)
+Places chainedPlaces(const Found& found)
 {
-    Matx33d R = Matx33d::eye();
-    Vec3d T;
-    for (size_t c = 0; c < found.size(); c++)
-    {
-        if (c > 0 && !found[c].second->has("T_cn_cnm1"))
-            return false;
-        if (c > 0)
-        {
-            const cv::Matx44d step(neededNumbers(*found[c].second, "T_cn_cnm1", 16).data());
-            R = step.get_minor<3, 3>(0, 0)*R;
-            T = step.get_minor<3, 3>(0, 0)*T + Vec3d(step(0, 3), step(1, 3), step(2, 3));
-        }
-        rig.add(found[c].first, R, T);
-    }
-    return true;
+    Places places(1);
+    for (size_t c = 1; c < found.size() && found[c].map->has("T_cn_cnm1"); c++)
+        places.push_back(cv::Affine3d(cv::Matx44d(neededNumbers(*found[c].map, "T_cn_cnm1", 16).data()))*places.back());
+    return places;
 }
 
-void addNumbers(const Json& json, std::vector<double>& numbers)
+//! Of all cameras, or of none.
+Places placesOf(const Found& found, const Json& file)
 {
-    if (json.isNumber())
-        numbers.push_back(json.asNumber());
-    else
-        for (const Json& item : json.items())
-            addNumbers(item, numbers);
+    Places places = ownPlaces(found);
+    if (places.size() == found.size())
+        return places;
+    const Places second = found.size() == 2 ? findPlace(file, found[0].map == found[1].map ? nullptr : found[0].map, 0) : Places();
+    places = second.empty() ? chainedPlaces(found) : Places{cv::Affine3d(), second[0]};
+    return places.size() == found.size() ? places : Places();
 }
 
 } // namespace
 
 std::vector<double> numbersOf(const Json& json)
 {
+    const Json& value = json.has("data") ? json.at("data") : json;
     std::vector<double> numbers;
-    try
+    if (value.isNumber())
+        numbers.push_back(value.asNumber());
+    for (size_t i = 0; value.isList() && i < value.items().size(); i++)
     {
-        addNumbers(json.has("data") ? json.at("data") : json, numbers);
-    }
-    catch (const Json::Error&)
-    {
-        numbers.clear();
+        const Json& item = value.at(i);
+        const std::vector<double> some = numbersOf(item);
+        if (some.empty() && !(item.isList() && item.items().empty()))
+            return {};
+        numbers.insert(numbers.end(), some.begin(), some.end());
     }
     return numbers;
 }
@@ -331,26 +316,10 @@ ForeignRig readKeyedCameras(const Json& file, std::string& format)
 {
     Found found;
     collect(file, 0, found, format);
+    const Places places = found.size() > 1 ? placesOf(found, file) : Places();
     ForeignRig rig;
-    rig.format = format;
-    Matx33d R;
-    Vec3d T;
-    if (found.size() > 1 && findPlaces(found, rig))
-        return rig;
-    rig = ForeignRig();
-    rig.format = format;
-    if (found.size() == 2 && findPlace(file, found[0].second == found[1].second ? nullptr : found[0].second, 0, R, T))
-    {
-        rig.add(found[0].first, Matx33d::eye(), Vec3d());
-        rig.add(found[1].first, R, T);
-    }
-    else if (found.size() == 1 || !findChain(found, rig))
-    {
-        rig = ForeignRig();
-        rig.format = format;
-        for (const auto& camera : found)
-            rig.add(camera.first);
-    }
+    for (size_t c = 0; c < found.size(); c++)
+        places.empty() ? rig.add(found[c].camera) : rig.add(found[c].camera, places[c].rotation(), places[c].translation());
     return rig;
 }
 

@@ -1,10 +1,8 @@
 // This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
 // SPDX-License-Identifier: Apache-2.0
 
-#include "console/failure.hpp"
 #include "console/lines.hpp"
 #include "formats/foreign_file.hpp"
-#include "formats/lens_maker.hpp"
 
 #include <map>
 #include <sstream>
@@ -21,55 +19,48 @@ using cv::Vec3d;
 namespace {
 
 //! What follows each line of '#', by the line's words as far as its colon.
-std::map<std::string, std::string> sectionsOf(const std::string& text)
+typedef std::map<std::string, std::string> Sections;
+
+Sections sectionsOf(const std::string& text)
 {
-    std::map<std::string, std::string> sections;
+    Sections sections;
     std::istringstream in(text);
     std::string name;
     for (std::string line; takeLine(in, line); )
         if (line.compare(0, 1, "#") == 0)
         {
-            const size_t begin = std::min(line.find_first_not_of("# "), line.size());
-            name = line.substr(begin, line.find(':') == std::string::npos ? line.npos : line.find(':') - begin);
+            name = line.substr(0, line.find(':'));
+            name.erase(0, name.find_first_not_of("# "));
         }
         else
             sections[name] += line + "\n";
     return sections;
 }
 
-class Sections
+const std::string& textOf(const Sections& file, const std::string& name)
 {
-public:
-    explicit Sections(const std::string& text) : sections_(sectionsOf(text)) {}
+    if (!file.count(name))
+        throw Failure("'# " + name + ":' is missing; is it cut short?");
+    return file.at(name);
+}
 
-    bool has(const std::string& name) const { return sections_.count(name) > 0; }
-    const std::string& text(const std::string& name) const
-    {
-        if (!has(name))
-            throw Failure("'# " + name + ":' is missing; is it cut short?");
-        return sections_.at(name);
-    }
-    //! @param count 0: any
-    std::vector<double> numbers(const std::string& name, size_t count) const
-    {
-        bool all;
-        const std::vector<double> numbers = leadingNumbers(text(name), &all);
-        if (!all || (count > 0 && numbers.size() != count))
-            throw Failure("'# " + name + ":' must be followed by " + (count ? std::to_string(count) + " numbers" : "numbers"));
-        return numbers;
-    }
-
-private:
-    std::map<std::string, std::string> sections_;
-};
+//! @param count 0: any
+std::vector<double> numbersOf(const Sections& file, const std::string& name, size_t count)
+{
+    bool all;
+    const std::vector<double> numbers = leadingNumbers(textOf(file, name), &all);
+    if (!all || (count > 0 && numbers.size() != count))
+        throw Failure("'# " + name + ":' must be followed by " + (count ? std::to_string(count) + " numbers" : "numbers"));
+    return numbers;
+}
 
 //! @param R, t the world to the camera
 cv::refract::GlassWindow windowOf(const Sections& file, const Matx33d& R, const Vec3d& t)
 {
-    const Vec3d face = R*Vec3d(file.numbers("Reference Point of Refractive Plate", 3).data()) + t;
-    const Vec3d normal = normalize(R*Vec3d(file.numbers("Normal Vector of Refractive Plate", 3).data()));
-    const std::vector<double> index = file.numbers("Refractive Index Array", 0);
-    const std::vector<double> width = file.numbers("Width of the Refractive Plate", 0);
+    const Vec3d face = R*Vec3d(numbersOf(file, "Reference Point of Refractive Plate", 3).data()) + t;
+    const Vec3d normal = normalize(R*Vec3d(numbersOf(file, "Normal Vector of Refractive Plate", 3).data()));
+    const std::vector<double> index = numbersOf(file, "Refractive Index Array", 0);
+    const std::vector<double> width = numbersOf(file, "Width of the Refractive Plate", 0);
     if (index.size() != width.size() + 2)
         throw Failure("it must have two indices more than plates: of the scene, of each plate, and of the air");
     cv::refract::GlassWindow window;
@@ -90,23 +81,23 @@ bool isOpenLpt(const ForeignFile& file) { return file.bytes.substr(0, 200).find(
 
 ForeignRig readOpenLpt(const ForeignFile& file)
 {
-    const Sections sections(file.bytes);
+    const Sections sections = sectionsOf(file.bytes);
     std::string model;
-    std::istringstream(sections.text("Camera Model")) >> model;
+    std::istringstream(textOf(sections, "Camera Model")) >> model;
     if (model != "PINHOLE" && model != "PINPLATE")
         throw Failure("its model " + model + " has no equal among OpenCV's: PINHOLE and PINPLATE have");
-    const std::vector<double> rowsColumns = sections.numbers("Image Size", 2);
-    Matx33d K(sections.numbers("Camera Matrix", 9).data());
+    const std::vector<double> rowsColumns = numbersOf(sections, "Image Size", 2);
+    Matx33d K(numbersOf(sections, "Camera Matrix", 9).data());
     const double up = K(1, 1) < 0 ? -1. : 1.;
     const Matx33d axes(1, 0, 0, 0, up, 0, 0, 0, 1);
     K(1, 1) *= up;
-    std::vector<double> D = sections.numbers("Distortion Coefficients", 0);
+    std::vector<double> D = numbersOf(sections, "Distortion Coefficients", 0);
     if (D.size() > 2)
         D[2] *= up;                 // p1 bends along y
     if (D.size() > 8 && up < 0)
         throw Failure("its y axis points up, and its lens has more than eight coefficients: the mirror image of that is not made here");
-    const Matx33d R = axes*Matx33d(sections.numbers("Rotation Matrix", 9).data());
-    const Vec3d t = axes*Vec3d(sections.numbers("Translation Vector", 3).data());
+    const Matx33d R = axes*Matx33d(numbersOf(sections, "Rotation Matrix", 9).data());
+    const Vec3d t = axes*Vec3d(numbersOf(sections, "Translation Vector", 3).data());
     const auto camera = makeCamera("opencv", K, D, imageSizeOf(rowsColumns[1], rowsColumns[0]));
     if (model == "PINPLATE")
         possible("plate", [&] { camera->setWindow(windowOf(sections, R, t)); });

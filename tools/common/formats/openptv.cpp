@@ -1,14 +1,11 @@
 // This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
 // SPDX-License-Identifier: Apache-2.0
 
-#include "console/failure.hpp"
 #include "console/lines.hpp"
 #include "formats/foreign_file.hpp"
-#include "formats/lens_maker.hpp"
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <sstream>
 
 /* OpenPTV's cameras look along -z, their image's y points up, and lengths in the image are millimetres from its middle:
@@ -32,31 +29,21 @@ namespace fs = std::filesystem;
 const double CORNER = 0.5;      // its pixel (0, 0) is a corner, not a centre
 const size_t WITHOUT_GLASS = 18, WITH_GLASS = 21;
 
-bool isRotation(const Matx33d& R)
-{
-    return cv::norm(R*R.t() - Matx33d::eye()) < 1e-3 && cv::determinant(R) > 0;
-}
-
-std::string textOf(const fs::path& path)
-{
-    std::ifstream in(path);
-    return std::string(std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>());
-}
+bool isRotation(const Matx33d& R) { return cv::norm(R*R.t() - Matx33d::eye()) < 1e-3 && cv::determinant(R) > 0; }
 
 struct AddedParameters
 {
-    double k1 = 0, k2 = 0, k3 = 0, p1 = 0, p2 = 0, scx = 1, she = 0;
+    double k1, k2, k3, p1, p2, scx, she;
 };
 
-AddedParameters readAdded(const std::string& ori)
+AddedParameters readAdded(const fs::path& ori)
 {
-    const std::string path = ori.size() > 4 && ori.compare(ori.size() - 4, 4, ".ori") == 0 ? ori.substr(0, ori.size() - 4) + ".addpar"
-                                                                                         : ori + ".addpar";
+    const fs::path path = (ori.extension() == ".ori" ? fs::path(ori).replace_extension() : ori).string() + ".addpar";
     if (!fs::is_regular_file(path))
-        throw Failure("its lens is missing: put '" + fs::path(path).filename().string() + "' beside it (k1 k2 k3 p1 p2 scx she)");
-    const std::vector<double> p = leadingNumbers(textOf(path));
+        throw Failure("its lens is missing: put '" + path.filename().string() + "' beside it (k1 k2 k3 p1 p2 scx she)");
+    const std::vector<double> p = leadingNumbers(contentsOf(path.string()).bytes);
     if (p.size() < 7)
-        throw Failure("'" + fs::path(path).filename().string() + "' must have the numbers k1 k2 k3 p1 p2 scx she");
+        throw Failure("'" + path.filename().string() + "' must have the numbers k1 k2 k3 p1 p2 scx she");
     return {p[0], p[1], p[2], p[3], p[4], p[5], p[6]};
 }
 
@@ -74,15 +61,14 @@ ControlParameters readControl(const fs::path& folder)
     {
         if (!fs::is_regular_file(path))
             continue;
-        std::istringstream in(textOf(path));
-        std::vector<std::string> lines;
-        for (std::string line; takeLine(in, line); )
-            lines.push_back(line);
-        const std::vector<double> count = leadingNumbers(lines.empty() ? "" : lines[0]);
-        const size_t names = count.size() == 1 && count[0] >= 1 && count[0] <= 100 ? 2*(size_t)count[0] + 1 : lines.size();
-        std::string rest;
-        for (size_t i = names; i < lines.size(); i++)
-            rest += lines[i] + "\n";
+        std::istringstream in(contentsOf(path.string()).bytes);
+        std::string line, rest;
+        takeLine(in, line);
+        const std::vector<double> count = leadingNumbers(line);
+        for (int name = 0; count.size() == 1 && name < 2*count[0] && count[0] <= 100; name++)
+            takeLine(in, line);
+        while (takeLine(in, line))
+            rest += line + "\n";
         // hp_flag allCam_flag tiff_flag imx imy pix_x pix_y chfield mmp_n1 mmp_n2 mmp_n3 mmp_d
         const std::vector<double> p = leadingNumbers(rest);
         if (p.size() < 12 || !(p[5] > 0 && p[6] > 0))

@@ -15,8 +15,6 @@ namespace cv { namespace refract { class RefractiveCamera; }}
 written again is the same: its pixel (0, 0) is a corner of the image. */
 namespace tools {
 
-const double COLMAP_CORNER = 0.5;       //!< the centre of the first pixel
-
 //! A rotation as COLMAP writes it, w x y z, and a translation.
 struct ColmapPose
 {
@@ -119,9 +117,6 @@ std::vector<std::string> colmapFilesOf(const std::string& folder, bool isBinary)
 
 //! Of a camera without a window, as OPENCV, FULL_OPENCV or OPENCV_FISHEYE: by its lens.
 ColmapCamera colmapCameraOf(const cv::refract::RefractiveCamera& camera, uint32_t id);
-
-//! A list of cameras in COLMAP's binary form. Throws Failure.
-std::vector<ColmapCamera> readColmapCameras(const std::string& bytes);
 
 } // namespace tools
 
