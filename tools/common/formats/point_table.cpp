@@ -4,17 +4,15 @@
 #include "formats/point_table.hpp"
 #include "console/failure.hpp"
 #include "console/images.hpp"
-#include "console/lines.hpp"
 #include "console/numbers.hpp"
 #include "console/options.hpp"
+#include "formats/foreign_file.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <map>
-#include <sstream>
 
 namespace tools {
 
@@ -66,50 +64,34 @@ CsvTable tableOf(const std::string& path, const std::vector<Observation>& all, s
 //! A coordinate that counts from elsewhere, where it was seen.
 std::string moved(double pixel) { return pixel == pixel ? cv::format("%.17g", pixel) : ""; }
 
-//! How a program names the columns of an observation.
-struct LongForm
-{
-    const char *frame, *camera, *point, *u, *v;
-};
-const LongForm OPENLPT = {"frame", "cam_id", "pt_idx", "x", "y"};
+//! How OpenLPT names the columns of an observation: the frame, the camera from 0, the point, u, v.
+const std::vector<std::string> OPENLPT = {"frame", "cam_id", "pt_idx", "x", "y"};
 
-size_t cameraOf(const CsvTable& table, const CsvTable::Row& row, const LongForm& form)
+CsvTable readOpenLpt(const std::string& path)
 {
-    const double camera = table.number(row, form.camera);
-    if (!(camera >= 0. && camera < (double)MOST_CAMERAS) || camera != std::floor(camera))
-        throw Failure(table.where(row) + ": " + form.camera + " must be the number of a camera, from 0");
-    return (size_t)camera;
-}
-
-CsvTable readLongForm(const std::string& path, const LongForm& form)
-{
-    const CsvTable table(path, {form.frame, form.camera, form.point, form.u, form.v}, "a table of observations");
+    const CsvTable table(path, OPENLPT, "a table of observations");
     std::vector<Observation> all;
     for (const CsvTable::Row& row : table.rows())
-        all.push_back({table.text(row, form.frame), table.text(row, form.point), cameraOf(table, row, form),
-                       table.textOrNone(row, form.u), table.textOrNone(row, form.v), row.line});
+    {
+        const double camera = table.number(row, OPENLPT[1]);
+        if (!(camera >= 0. && camera < (double)MOST_CAMERAS) || camera != std::floor(camera))
+            throw Failure(table.where(row) + ": " + OPENLPT[1] + " must be the number of a camera, from 0");
+        all.push_back({table.text(row, OPENLPT[0]), table.text(row, OPENLPT[2]), (size_t)camera, table.textOrNone(row, OPENLPT[3]),
+                       table.textOrNone(row, OPENLPT[4]), row.line});
+    }
     return tableOf(path, all, 0);
 }
 
-//! Takes a word and the number after it from the front of a text; false: it begins with something else.
-bool takeNumbered(const std::string& word, const char*& at, const char* end, size_t& number)
-{
-    if ((size_t)(end - at) < word.size() || word.compare(0, word.size(), at, word.size()) != 0)
-        return false;
-    const auto read = std::from_chars(at + word.size(), end, number);
-    at = read.ptr;
-    return read.ec == std::errc();
-}
-
-//! pt3_cam1_x: 3 and 1; false: it is another name.
+//! pt3_cam1_x: 3, and 0, the first; false: it is another name.
 bool isTrack(const std::string& name, size_t& point, size_t& camera)
 {
-    size_t number = 0;
-    const char *at = name.data(), *const end = at + name.size();
-    const bool is = takeNumbered("pt", at, end, point) && takeNumbered("_cam", at, end, number) && number >= 1 && number <= MOST_CAMERAS
-        && std::string(at, end) == "_x";
-    camera = number - 1;
-    return is;
+    char digits[2][10];
+    int end = 0;
+    if (std::sscanf(name.c_str(), "pt%9[0-9]_cam%9[0-9]_x%n", digits[0], digits[1], &end) != 2 || end != (int)name.size())
+        return false;
+    point = std::stoul(digits[0]);
+    camera = std::stoul(digits[1]) - 1;
+    return camera < MOST_CAMERAS;
 }
 
 //! The image's height where y counts from the bottom.
@@ -177,19 +159,6 @@ CsvTable readTracks(const std::string& path, const PixelOrigin& origin)
     return tableOf(path, all, 1);
 }
 
-std::vector<std::string> linesOf(const std::string& path)
-{
-    std::ifstream in(path);
-    std::vector<std::string> lines;
-    for (std::string line; takeLine(in, line); )
-        lines.push_back(line.substr(0, line.find_last_not_of("\r\n ") + 1));
-    while (!lines.empty() && lines.back().empty())
-        lines.pop_back();
-    return lines;
-}
-
-bool isDeepLabCut(const std::vector<std::string>& lines) { return !lines.empty() && lines[0].compare(0, 7, "scorer,") == 0; }
-
 //! Three lines of heading: scorer, bodyparts, coords; then one row a frame: its number, and x, y, likelihood of each part.
 void addDeepLabCut(const std::string& path, size_t camera, std::vector<Observation>& all)
 {
@@ -210,30 +179,19 @@ void addDeepLabCut(const std::string& path, size_t camera, std::vector<Observati
 }
 
 //! The number of targets, then a line each: number, x, y, three sizes, sum of grey levels, number of correspondence (-1: none).
-bool isTargets(const std::vector<std::string>& lines)
-{
-    double count;
-    return !lines.empty() && std::istringstream(lines[0]) >> count;
-}
-
 void addTargets(const std::string& path, const std::vector<std::string>& lines, size_t camera, std::vector<Observation>& all)
 {
-    const size_t CELLS = 8;
-    double count = 0.;
-    std::istringstream(lines[0]) >> count;
+    const double count = leadingNumbers(lines[0])[0];
     if ((double)lines.size() != count + 1)
         throw Failure("'" + path + "' looks like OpenPTV's targets, but has " + std::to_string(lines.size() - 1)
                       + cv::format(" of %g: is it cut short?", count));
     for (size_t r = 1; r < lines.size(); r++)
     {
-        std::istringstream in(lines[r]);
-        double cells[CELLS];
-        for (double& cell : cells)
-            if (!(in >> cell))
-                throw Failure("'" + path + "' line " + std::to_string(r + 1) + ": 8 numbers of a target are expected");
-        if (cells[CELLS - 1] >= 0)
-            all.push_back({"0", cv::format("%.0f", cells[CELLS - 1]), camera, moved(cells[1] - CORNER), moved(cells[2] - CORNER),
-                           (int)r + 1});
+        const std::vector<double> cells = leadingNumbers(lines[r]);
+        if (cells.size() < 8)
+            throw Failure("'" + path + "' line " + std::to_string(r + 1) + ": 8 numbers of a target are expected");
+        if (cells[7] >= 0)
+            all.push_back({"0", cv::format("%.0f", cells[7]), camera, moved(cells[1] - CORNER), moved(cells[2] - CORNER), (int)r + 1});
     }
 }
 
@@ -257,10 +215,10 @@ CsvTable readFilesOfCameras(const std::string& pattern)
     std::vector<Observation> all;
     for (size_t c = 0; c < files.size(); c++)
     {
-        const std::vector<std::string> lines = linesOf(files[c]);
-        if (isDeepLabCut(lines))
+        const std::vector<std::string> heading = headingOf(files[c]), lines = contentsOf(files[c]).lines();
+        if (!heading.empty() && heading[0] == "scorer")
             addDeepLabCut(files[c], c, all);
-        else if (isTargets(lines))
+        else if (!lines.empty() && !leadingNumbers(lines[0]).empty())
             addTargets(files[c], lines, c, all);
         else
             throw Failure("'" + files[c] + "' is neither a table of DeepLabCut (scorer, bodyparts, coords) nor OpenPTV's targets, which "
@@ -290,9 +248,9 @@ CsvTable readPointTable(const std::string& path, const std::vector<std::string>&
                       + "' is none: leave it out");
     if (isOfCameras)
         return readFilesOfCameras(path);
-    const auto has = [&](const char* name) { return std::find(heading.begin(), heading.end(), name) != heading.end(); };
-    if (has(OPENLPT.frame) && has(OPENLPT.camera) && has(OPENLPT.point) && has(OPENLPT.u) && has(OPENLPT.v))
-        return readLongForm(path, OPENLPT);
+    const auto has = [&](const std::string& name) { return std::count(heading.begin(), heading.end(), name) > 0; };
+    if (std::all_of(OPENLPT.begin(), OPENLPT.end(), has))
+        return readOpenLpt(path);
     if (has("scorer"))
         throw Failure("'" + path + "' looks like DeepLabCut's table of one camera: give those of all, with %d in place of the camera's "
                       "number");
