@@ -16,10 +16,10 @@ using namespace tools;
 
 namespace {
 
-//! Pairs of the paper's rig as they are, with all that is given right.
-CalibrationInput rightlyGiven(int cameras, scenes::Random& random, int outermostRows = 0)
+//! Pairs of the rig as they are, with all that is given right.
+CalibrationInput rightlyGiven(const RigModel& rig, scenes::Random& random, int outermostRows = 0)
 {
-    const RigModel rig = paperRig(cameras);
+    const int cameras = (int)rig.cameras.size();
     CalibrationInput input;
     input.square = 39.;
     input.data.cameraCount = cameras;
@@ -47,6 +47,11 @@ CalibrationInput rightlyGiven(int cameras, scenes::Random& random, int outermost
         }
     }
     return input;
+}
+
+CalibrationInput rightlyGiven(int cameras, scenes::Random& random, int outermostRows = 0)
+{
+    return rightlyGiven(paperRig(cameras), random, outermostRows);
 }
 
 std::string explained(const CalibrationInput& input)
@@ -230,6 +235,22 @@ TEST_CASE("What the library says is told in the tool's words", "[diagnosis]")
     REQUIRE(hint != std::string::npos);
     CHECK(medium < hint);
     CHECK(medium < text.find("a notice"));
+}
+
+TEST_CASE("Where a fit does not converge, one window for cameras that look the same way is named if it fits", "[diagnosis]")
+{
+    scenes::Random random(931);
+    const CalibrationError error(CalibrationError::NOT_CONVERGED, "it did not converge; raise criteria.maxCount", "it did not converge");
+    RigModel rig = paperRig(2);
+    CHECK_THAT(explainError(error, rightlyGiven(rig, random)), !Catch::Contains("--window-of-camera"));
+    GlassWindow pane = rig.cameras[0]->window();
+    pane.normal = rig.extrinsics[1].R*pane.normal;
+    pane.distance += pane.normal.dot(rig.extrinsics[1].T);
+    rig.cameras[1]->setWindow(pane);            // the pane of camera 1, as camera 2 has it
+    CalibrationInput input = rightlyGiven(rig, random);
+    CHECK_THAT(explainError(error, input), Catch::Contains("With --window-of-camera=1,1 they fit within 0."));
+    input.options.windows = {0, 0};             // said already
+    CHECK_THAT(explainError(error, input), !Catch::Contains("--window-of-camera"));
 }
 
 TEST_CASE("Points of files that are mirrored, or in another unit than the window, are told", "[diagnosis]")

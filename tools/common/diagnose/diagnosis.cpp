@@ -402,12 +402,25 @@ std::vector<std::string> reasonsFor(const CalibrationInput& input, bool& explain
     return reasons;
 }
 
-//! A fit does not converge along what is hardly determined.
-std::string undeterminedAdvice(int flags)
+/** Of a pane before each camera an image tells the tilt only through perspective; of one that cameras share, they tell it together. Not a
+cause of errors: windows of their own fit as well. */
+std::string sharingAdvice(const CalibrationInput& input)
 {
+    if (!isRig(input) || !input.options.windows.empty() || input.options.window.shape != WINDOW_FLAT)
+        return "";
+    const Explanation shared = sharedWindows(input);
+    if (!(shared.px < largestSoundError(input.data)))
+        return "";
+    return format("With %s they fit within %.2g px: say so if these cameras look through one window. ", shared.sentence.c_str(), shared.px);
+}
+
+//! A fit does not converge along what is hardly determined.
+std::string undeterminedAdvice(const CalibrationInput& input)
+{
+    const int flags = input.options.flags;
     // The distance is set free without being asked for where it is needed.
     const bool asked = flags & (GLASS_FREE_THICKNESS | GLASS_FREE_INDEX | GLASS_FREE_OUTER_INDEX | GLASS_FREE_INTRINSICS);
-    return std::string("the images hardly determine what is free. ") + (asked ? "Leave out --free=..., g" : "G")
+    return "the images hardly determine what is free. " + sharingAdvice(input) + (asked ? "Leave out --free=..., g" : "G")
         + "ive what you know (--thickness, --index, --distance, --camera), or add images: pairs, more tilt, more depth";
 }
 
@@ -426,7 +439,7 @@ std::string explainError(const CalibrationError& error, const CalibrationInput& 
         return explainError(error.err, input);
     bool explained;
     const std::vector<std::string> reasons = reasonsFor(input, explained);
-    const std::string advice = undeterminedAdvice(input.options.flags);
+    const std::string advice = undeterminedAdvice(input);
     if (explained)          // what fits is likelier than that nothing would
         return error.reason + ": " + joined(reasons) + ". If it is not that, " + advice;
     return error.reason + ": " + advice + (reasons.empty() ? "" : ". However, " + joined(reasons));

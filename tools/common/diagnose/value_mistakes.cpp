@@ -8,6 +8,7 @@
 #include "calibrate/window_face.hpp"
 #include "console/median.hpp"
 #include "console/table.hpp"
+#include <algorithm>
 #include <numeric>
 
 using namespace cv::refract;
@@ -49,6 +50,22 @@ bool isMoreUsual(const Fit& fit, double factor)
         ranges.push_back(cv::norm(t));
     const double range = median(ranges)/(USUAL*depth);
     return std::abs(std::log(range)) < std::abs(std::log(range/factor));
+}
+
+//! Cameras that look the same way may look through one window: its number for each, from 1.
+std::vector<int> windowsBySide(const RigModel& rig)
+{
+    std::vector<int> windows;
+    std::vector<cv::Vec3d> sides;           // which way the first camera of each looks
+    for (const RigidTransform& cam_from_cam1 : rig.extrinsics)
+    {
+        const cv::Vec3d axis = cam_from_cam1.R.t()*cv::Vec3d(0., 0., 1.);
+        const auto side = std::find_if(sides.begin(), sides.end(), [&](const cv::Vec3d& other) { return other.dot(axis) > 0.; });
+        windows.push_back(1 + (int)(side - sides.begin()));
+        if (side == sides.end())
+            sides.push_back(axis);
+    }
+    return windows;
 }
 
 } // namespace
@@ -183,6 +200,24 @@ Explanation separateWindows(const CalibrationInput& input)
     RigOptions options = input.options;
     options.windows.clear();
     return {"a window of its own for each camera: leave --shared-window (--window-of-camera) out", medianErrorOfFit(input.data, options)};
+}
+
+Explanation sharedWindows(const CalibrationInput& input)
+{
+    RigOptions options = input.options;
+    try
+    {
+        std::vector<LensSource> sources;
+        options.windows = windowsBySide(startModel(input.data, options, sources));
+    }
+    catch (const std::exception&)
+    {
+        return {"", NO_FIT};
+    }
+    std::string list;
+    for (int window : options.windows)
+        list += (list.empty() ? "" : ",") + std::to_string(window);
+    return {"--window-of-camera=" + list, medianErrorOfFit(input.data, options)};
 }
 
 } // namespace tools

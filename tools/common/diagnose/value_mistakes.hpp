@@ -29,6 +29,9 @@ Explanation wrongShape(const CalibrationInput& input);
 //! Cameras that were said to share a window have one each.
 Explanation separateWindows(const CalibrationInput& input);
 
+//! One window for all cameras that look the same way, of a rig whose windows are not said to be shared.
+Explanation sharedWindows(const CalibrationInput& input);
+
 } // namespace tools
 
 #endif // REFRACT_TOOLS_VALUE_MISTAKES_HPP
