@@ -247,7 +247,7 @@ TEST_CASE("refract_accept refuses images that calibrated, and tells when it cann
     CHECK(mentions(runTool(bench.accept(out / "named.csv", out / "named_lengths.csv", "9")).out, "Images of these names calibrated"));
 }
 
-TEST_CASE("Images that calibrated are known again, stored anew or with points left out; a board next to where it was is not",
+TEST_CASE("Images that calibrated are known again, stored anew, cropped or with points left out; a board next to where it was is not",
           "[tools][accept_tool]")
 {
     const Bench& bench = Bench::get();
@@ -282,12 +282,13 @@ TEST_CASE("Images that calibrated are known again, stored anew or with points le
         return runTool(bench.start() + " " + out / "new1.vnl" + " " + out / "new2.vnl" + BOARD_OPTIONS + " --lengths=" + out / "l.csv"
                        + " --max-error=5");
     };
-    for (const auto& [noise, leftOut] : {std::make_pair(0., 0), {0.03, 0}, {0., 10}, {0.03, 20}})
+    for (const auto& [noise, shift, leftOut] : {std::make_tuple(0., 0., 0), {0.03, 0., 0}, {0., 0., 10}, {0.03, 0., 20},
+                                                {0., 1., 0}, {0.03, -3., 0}, {0., 17., 10}})       // cropped or rolled
     {
-        const ToolResult same = accept(noise, 0., leftOut);
-        CAPTURE(noise, leftOut, same.out, same.err);
+        const ToolResult same = accept(noise, shift, leftOut);
+        CAPTURE(noise, shift, leftOut, same.out, same.err);
         CHECK(same.code == 1);
-        CHECK(mentions(same.err, "these images calibrated, stored anew perhaps"));
+        CHECK(mentions(same.err, "these images calibrated, stored anew or cropped perhaps"));
     }
     const ToolResult near = accept(0.03, 0.8, 0);
     CAPTURE(near.out, near.err);

@@ -50,6 +50,32 @@ bool areSame(const std::vector<cv::Point2d>& pixels, const std::vector<cv::Point
     return countSame(pixels, others, tolerance) >= std::max(FEWEST, half + 1);
 }
 
+std::vector<cv::Point2d> moved(std::vector<cv::Point2d> pixels, const cv::Point2d& by)
+{
+    for (cv::Point2d& pixel : pixels)
+        pixel += by;
+    return pixels;
+}
+
+/** Whether one shows what the other does so many whole pixels beside it: cropped or rolled. Where half of the pixels do, one of the probes
+does, but for one time in 2^PROBES. @param pixels, others in the order of x */
+bool areSameBeside(const std::vector<cv::Point2d>& pixels, const std::vector<cv::Point2d>& others, double tolerance)
+{
+    const size_t PROBES = 8;
+    std::vector<cv::Point2d> probes;
+    for (size_t i = 0; i < std::min(PROBES, pixels.size()); i++)
+        probes.push_back(pixels[i*pixels.size()/std::min(PROBES, pixels.size())]);
+    for (const cv::Point2d& probe : probes)
+        for (const cv::Point2d& other : others)
+        {
+            const cv::Point2d whole(std::round(other.x - probe.x), std::round(other.y - probe.y));
+            if (cv::norm(other - probe - whole) < tolerance && countSame(moved(probes, whole), others, tolerance) >= probes.size()/2
+                && areSame(moved(pixels, whole), others, tolerance))
+                return true;
+        }
+    return false;
+}
+
 } // namespace
 
 double sameImageTolerance(double pixelSigma)
@@ -114,7 +140,8 @@ const CalibrationImage* findImage(const std::vector<CalibrationImage>& images, i
     const std::vector<cv::Point2d> sorted = seenOf(pixels);
     for (const CalibrationImage& image : images)
         if (image.camera == camera && (image.pixels.empty() ? cv::norm(image.mean - mean) < SAME_MEAN       // false for NaN
-                                                            : areSame(image.pixels, sorted, tolerance)))
+                                       : areSame(image.pixels, sorted, tolerance)
+                                         || areSameBeside(image.pixels, sorted, std::min(tolerance, USUAL_TOLERANCE))))
             return &image;
     return nullptr;
 }

@@ -8,8 +8,8 @@
 #include "calibrate/rig_data.hpp"
 
 /* Images that calibrated, so that they are known again: they must not test the calibration. A file is known by its bytes; an image that
-was stored anew, made a little noisier, or of which points were left out, by where it shows the target: a board that was held anew, even
-next to where it was, is farther off. */
+was stored anew, made a little noisier, cropped, or of which points were left out, by where it shows the target: a board that was held anew,
+even next to where it was, is farther off. */
 namespace tools {
 
 //! One that calibrates.
@@ -41,7 +41,8 @@ cv::Point2d meanOfSeen(const std::vector<cv::Point2d>& pixels);
 //! The image with these bytes; null: none.
 const CalibrationImage* findImage(const std::vector<CalibrationImage>& images, const std::string& sha256);
 
-//! The image of a camera that shows the target where these pixels do (areOfOneImage); null: none.
+/** The image of a camera that shows the target where these pixels do (areOfOneImage), or the same number of whole pixels beside them, as
+one does that was cropped or rolled; null: none. */
 const CalibrationImage* findImage(const std::vector<CalibrationImage>& images, int camera, const std::vector<cv::Point2d>& pixels,
                                   double tolerance);
 

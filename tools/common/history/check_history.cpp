@@ -325,7 +325,8 @@ void requireSameRig(CheckHistory& history, const std::string& filename, const Ca
 void requireNotCalibrated(const CheckRecord& check, const Calibration& calibration, double tolerance)
 {
     const std::vector<CalibrationImage>& used = calibration.provenance.images;
-    const std::string why = " calibrated, stored anew perhaps, or its target was not moved since: a check needs images of its own";
+    const std::string why = " calibrated, stored anew or cropped perhaps, or its target was not moved since: a check needs images of its "
+                            "own";
     for (const CheckedImage& image : check.images)
         if (findImage(used, image.sha256))
             throw Failure("'" + image.name + "'" + why);
@@ -346,8 +347,8 @@ void requireNew(const CheckHistory& history, const std::string& filename, const 
         for (const CalibrationImage& image : check.shown)
             if (const CalibrationImage* const old = findImage(before.shown, image.camera, image.pixels, tolerance))
                 throw Failure("'" + image.name + cv::format("' of camera %d is in '", image.camera + 1) + filename + "' already, as '"
-                              + old->name + "' of the check of " + before.time + ", stored anew perhaps: each check needs images of its "
-                              "own. If the target stands where it stood then, say --fixed-target");
+                              + old->name + "' of the check of " + before.time + ", stored anew or cropped perhaps: each check needs "
+                              "images of its own. If the target stands where it stood then, say --fixed-target");
     for (const CheckRecord& before : history.checks)
         for (const CheckedImage& old : before.images)
             for (const CheckedImage& image : check.images)
