@@ -139,6 +139,21 @@ TEST_CASE("refract_calib prints ten lines of 80 columns", "[calib_tool][ten_line
     }
 }
 
+TEST_CASE("Where not all fits into ten lines, what a tape measure can check does", "[calib_tool][ten_lines]")
+{
+    const TemporaryFolder f;
+    SceneOptions options;
+    options.stereo = true;
+    options.wrong = 0.02;       // some are left out, which is said, too
+    writeScene(f, options, 133);
+    const Screen screen = screenOf(f, brief(f, images2(f) + PANE + " --max-rms=0.2 --max-error-at=600:5"));
+    checkTenLines(screen);
+    INFO(screen.text);
+    CHECK(mentions(screen.text, "Met: --max-rms=0.2"));
+    CHECK(mentions(screen.text, "Check by tape measure: camera 2 is 22"));
+    CHECK_FALSE(mentions(screen.text, "Left out:"));
+}
+
 TEST_CASE("refract_calib tells the most important weak points first, and how many it leaves out", "[calib_tool][ten_lines]")
 {
     const TemporaryFolder f;

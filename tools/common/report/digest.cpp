@@ -9,6 +9,7 @@
 #include "console/table.hpp"
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <ostream>
 
 using Lines = std::vector<std::string>;
@@ -158,6 +159,33 @@ std::string leftOut(const RigCalibration& c)
     return text;
 }
 
+struct Fact
+{
+    std::string text;       //!< may be empty
+    int worth;              //!< of two, that of more worth is printed if there is room for one
+};
+
+//! In their order.
+Lines factsWithin(const std::vector<Fact>& facts, size_t room)
+{
+    std::vector<size_t> byWorth(facts.size());
+    std::iota(byWorth.begin(), byWorth.end(), 0);
+    std::sort(byWorth.begin(), byWorth.end(), [&](size_t a, size_t b) { return facts[a].worth > facts[b].worth; });
+    std::vector<Lines> chosen(facts.size());
+    for (size_t i : byWorth)
+    {
+        const Lines lines = facts[i].text.empty() ? Lines() : broken(facts[i].text);
+        if (lines.size() > room)
+            continue;
+        room -= lines.size();
+        chosen[i] = lines;
+    }
+    Lines all;
+    for (const Lines& lines : chosen)
+        append(all, lines);
+    return all;
+}
+
 } // namespace
 
 std::string errorAtThreeRanges(const RigCalibration& c, const Assessment& a)
@@ -176,13 +204,14 @@ std::string errorAtThreeRanges(const RigCalibration& c, const Assessment& a)
 void printDigest(std::ostream& out, const RigCalibration& c, const Assessment& a, const Findings& f, const std::string& report)
 {
     const Lines head = broken(f.verdict());
-    Lines tail, facts;
+    Lines tail;
+    std::vector<Fact> facts;
     if (f.contradictions.empty())       // they make numbers of it wrong
     {
         append(tail, broken("A measured point: +- " + errorAtThreeRanges(c, a)));
         append(tail, broken(std::string("  (one standard deviation, ") + (c.data.cameraCount > 1 ? "3-D" : "plane square to the camera")
                             + ", worst point of the image)"));
-        facts = {metLimits(f), heldOutBoards(c), leftOut(c), places(c), tapeMeasures(c)};
+        facts = {{metLimits(f), 5}, {heldOutBoards(c), 3}, {leftOut(c), 1}, {places(c), 2}, {tapeMeasures(c), 4}};
     }
     append(tail, firstOf(broken("Next: " + nextStep(c, a, f) + "."), 3, DIGEST_COLUMNS));
     append(tail, firstOf(broken("More: --verbose, " + (report.empty() ? "--report=report.html" : report)), 1, DIGEST_COLUMNS));
@@ -194,15 +223,8 @@ void printDigest(std::ostream& out, const RigCalibration& c, const Assessment& a
         out << toned(out, line, f.tone()) << '\n';
     for (const std::string& line : reasons)
         out << line << '\n';
-    for (const std::string& fact : facts)
-    {
-        const Lines lines = broken(fact);
-        if (fact.empty() || lines.size() > room)
-            continue;
-        room -= lines.size();
-        for (const std::string& line : lines)
-            out << line << '\n';
-    }
+    for (const std::string& line : factsWithin(facts, room))
+        out << line << '\n';
     for (const std::string& line : tail)
         out << line << '\n';
 }
