@@ -79,6 +79,16 @@ std::vector<double> numbersOf(const std::string& line)
 
 } // namespace
 
+TEST_CASE("refract_export says the unit of its lengths", "[tools][export]")
+{
+    const TemporaryFolder folder;
+    writeFile(folder / "calib.yml", readFile(CALIB) + "unit: cm\n");
+    const ToolResult result = runTool("refract_export " + folder / "calib.yml" + " --to=opencv" + RANGE + " --out=" + folder / "central.yml");
+    CAPTURE(result.out, result.err);
+    REQUIRE(result.code == 0);
+    CHECK(mentions(result.out, "rms, px  max, px  rms, cm  max, cm  moved by, cm\n"));
+}
+
 TEST_CASE("refract_export writes OpenCV's cameras, which see the points within the stated error", "[tools][export]")
 {
     const TemporaryFolder folder;
@@ -87,6 +97,7 @@ TEST_CASE("refract_export writes OpenCV's cameras, which see the points within t
     CAPTURE(result.out, result.err);
     REQUIRE(result.code == 0);
     CHECK(result.out.find("camera2") != std::string::npos);
+    CHECK(mentions(result.out, "rms, px  max, px  rms, length  max, length  moved by\n"));        // CALIB does not say its unit
     CHECK(mentions(result.out, "Written: '" + file + "'"));
     const Rig rig;
     FileStorage fs(file, FileStorage::READ);
