@@ -30,8 +30,8 @@ std::vector<std::string> remarksOfStated(const TestPoints& points, double stated
     if (!(stated < calibrated))
         return {};
     const std::string less = given + format(" is less than the %.2g px of the calibration's residuals", calibrated);
-    return {shown == shown ? less + format("; the points' own rays miss each other by as much as %.2g px make", shown)
-                           : less + ", and nothing in these points supports it"};
+    return {shown > 0. ? less + format("; the points' own rays miss each other by as much as %.2g px make", shown)
+                       : less + ", and nothing in these points supports it"};
 }
 
 } // namespace
