@@ -97,6 +97,12 @@ TEST_CASE("A ChArUco board of another size than --size is told by where its mark
     {
         CHECK_THAT(failure("8x5", legacy, legacy, "5x8"), Catch::Contains("give --size=8x5, columns before rows"));
         CHECK_THAT(failure("9x6", legacy, legacy, "6x9"), Catch::Contains("give --size=9x6, columns before rows"));
+        for (const char* size : {"6x5", "8x5", "7x6", "5x6"})       // squares counted: of 6x5, the numbers of 6x7 exchanged
+        {
+            const std::string squares{char(size[0] + 1), 'x', char(size[2] + 1)};
+            CHECK_THAT(failure(size, legacy, legacy, squares), Catch::Contains(std::string("squares, as many as --size=") + squares)
+                                                                && Catch::Contains(std::string("give --size=") + size));
+        }
         CHECK_THAT(failure("8x6", legacy, legacy, "7x6"), Catch::Contains("in 9 columns of squares, not in the 8 of --size=7x6"));
         CHECK(failure("8x6", legacy, legacy) == "found");
     }

@@ -99,6 +99,16 @@ int columnsOf(const MarkerCorners& corners, const std::vector<int>& ids)
     return 0;
 }
 
+//! How many rows of squares are seen to have markers, if these are in so many columns.
+int rowsOf(const std::vector<int>& ids, int columns)
+{
+    int last = -1;
+    const std::vector<cv::Point> places = markerSquares(cv::Size(columns, *std::max_element(ids.begin(), ids.end()) + 1), false);
+    for (int id : ids)
+        last = std::max(last, places[id].y);
+    return last + 1;
+}
+
 void requireLayout(const MarkerCorners& corners, const std::vector<int>& ids, cv::Size squares, bool legacy)
 {
     if (!(misfit(corners, ids, squares, legacy) > WRONG))
@@ -108,6 +118,9 @@ void requireLayout(const MarkerCorners& corners, const std::vector<int>& ids, cv
                              : "the markers of this ChArUco board are where OpenCV put them before 4.6 (a marker in the first corner, of a "
                                "board with an even number of rows): say --legacy");
     const int columns = columnsOf(corners, ids);
+    if (columns > 0 && columns == squares.width - 1 && rowsOf(ids, columns) == squares.height - 1)
+        throw Failure(cv::format("this ChArUco board has %dx%d squares, as many as --size=%dx%d says of inner corners: give --size=%dx%d",
+                                 columns, squares.height - 1, columns, squares.height - 1, columns - 1, squares.height - 2));
     if (columns != squares.width && columns == squares.height)
         throw Failure(cv::format("the markers of this ChArUco board are in %d columns of squares: give --size=%dx%d, columns before rows",
                                  columns, squares.height - 1, squares.width - 1));
