@@ -154,6 +154,36 @@ TEST_CASE("Where not all fits into ten lines, what a tape measure can check does
     CHECK_FALSE(mentions(screen.text, "Left out:"));
 }
 
+TEST_CASE("That much does not fit and was left out is a weak point, and says of which images", "[calib_tool][verdict]")
+{
+    for (int wrongViews : {1, 4})
+    {
+        const TemporaryFolder f;
+        writeScene(f, SceneOptions(), 134);
+        // As of another camera or window: of the first images three corners in five are elsewhere.
+        std::istringstream in(readFile(f / "glass1.vnl"));
+        std::ostringstream changed;
+        int row = 0;
+        for (std::string line; std::getline(in, line); row++)
+        {
+            std::istringstream words(line);
+            std::string name;
+            double x, y;
+            if (line[0] != '#' && words >> name >> x >> y && std::stoi(name.substr(name.find("view") + 4, 2)) < wrongViews && row % 5 < 3)
+                line = name + format(" %g %g 0", x + 5 + row*7 % 11, y - 5 - row*5 % 13);
+            changed << line << '\n';
+        }
+        writeFile(f / "glass1.vnl", changed.str());
+        const ToolResult r = runTool(brief(f, PANE + lens(f) + " --unpaired --summary=" + f / "s.json", false));
+        CAPTURE(wrongViews, r.out, r.err);
+        REQUIRE(r.code == 0);
+        const std::string weak = summaryOf(f)["findings"]["weak"].dump();
+        CHECK(mentions(weak, "points through the window do not fit the others and were left out") == (wrongViews > 1));
+        for (int view = 0; view < wrongViews; view++)
+            CHECK(mentions(weak, format("'view%02d'", view)) == (wrongViews > 1));
+    }
+}
+
 TEST_CASE("refract_calib tells the most important weak points first, and how many it leaves out", "[calib_tool][ten_lines]")
 {
     const TemporaryFolder f;

@@ -7,6 +7,7 @@
 #include "measure/f_distribution.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "calibrate/pinhole_camera.hpp"
+#include "console/numbers.hpp"
 #include "console/table.hpp"
 #include <algorithm>
 #include <cmath>
@@ -24,6 +25,7 @@ const double OUTLYING_VIEW = 2.5;           // times the median RMS of the views
 const double INFLUENTIAL = 3.;              // standard deviations that one view may turn the normal
 const double LOW_COVERAGE = 0.5;
 const double NARROW_RANGE = 1.2;            // farthest / nearest
+const double MANY_LEFT_OUT = 0.2;           // of a camera's points
 const int ENOUGH_WITHOUT_PAIRS = 5;         // images through the window
 const size_t FLAT_IMAGES_TO_JUDGE = 2;      // a pose fits itself to one
 const double HELD_OUT_CHANCE = 1e-3;        // that true +- look so wrong on held-out boards
@@ -97,6 +99,38 @@ void checkFit(const RigCalibration& c, int camera, CollectedFindings& f)
     if (depth[2] < NARROW_RANGE*depth[0])
         f.add(THE_DATA, prefixOf(c, camera) + format("all boards are at nearly the same depth (%.4g to %.4g %s): vary it", depth[0],
                                                 depth[2], c.unit.c_str()));
+}
+
+//! -1: none is called so.
+int indexOfView(const RigCalibration& c, const std::string& stem)
+{
+    const std::vector<View>& views = c.data.views;
+    const auto found = std::find_if(views.begin(), views.end(), [&](const View& view) { return view.stem == stem; });
+    return found == views.end() ? -1 : (int)(found - views.begin());
+}
+
+/** A robust fit goes with the majority. What is left out of a few images is dirt; where it is much, images may be of another camera or
+window, and what fits the others is not what all were taken for. */
+void checkLeftOut(const RigCalibration& c, int camera, CollectedFindings& f)
+{
+    for (bool glass : {true, false})
+    {
+        const int kept = rmsOf(c, camera, glass).points;
+        int leftOut = 0;
+        std::vector<std::string> images;
+        for (const Rejected& rejected : rejectedOf(c))
+            if (rejected.camera == camera && rejected.glass == glass)
+            {
+                leftOut += rejected.points;
+                if (rejected.image || rejected.points > rmsOf(c, camera, glass, indexOfView(c, rejected.view)).points)
+                    images.push_back(rejected.view);
+            }
+        if (leftOut > MANY_LEFT_OUT*(kept + leftOut))
+            f.add(THE_FIT, prefixOf(c, camera) + format("%.0f %% of the points %s do not fit the others and were left out",
+                      100.*leftOut/(kept + leftOut), glass ? "through the window" : "of direct images")
+                  + (images.empty() ? "" : ", most of those of " + listed(images))
+                  + ": are these images of this camera and window, and sharp?");
+    }
 }
 
 //! One board joins two cameras wherever they are, so that nothing in it shows whether its images are of one moment. Known poses do.
@@ -272,6 +306,7 @@ Findings findingsOf(const RigCalibration& calibration, const Assessment& assessm
         if (calibration.fit.rig.ownsWindow(c))
             checkWindow(calibration, c, findings);
         checkFit(calibration, c, findings);
+        checkLeftOut(calibration, c, findings);
         checkLink(calibration, c, findings);
         checkViews(calibration, c, findings);
     }
