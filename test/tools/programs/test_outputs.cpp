@@ -201,6 +201,29 @@ TEST_CASE("A disk that is full is told, and what was there stays", "[tools][outp
     }
 }
 
+TEST_CASE("What a full disk does not take is kept elsewhere, and it is said where", "[tools][outputs]")
+{
+    const Inputs in;
+    const TemporaryFolder& f = in.folder;
+    for (const char* folder : {"small", "elsewhere"})
+        std::filesystem::create_directory(f/folder);
+    const std::string enter = "unshare -rm sh -c 'mount -t tmpfs -o size=4k none " + f / "small" + " && ";     // a page
+    if (std::system((enter + "true' 2>/dev/null").c_str()) != 0)
+    {
+        WARN("SKIPPED: no file system of one page can be made here");
+        return;
+    }
+    const std::string measure = paths::programs() + "/refract_measure " + in.calib + " " + in.left + " " + in.right + TARGET
+        + " --pixel-sigma=0.014 --quiet --out=" + f / "small/points.csv";
+    CHECK(std::system((enter + "TMPDIR=" + f / "elsewhere" + " " + measure + "' 2>" + f / "said").c_str()) != 0);
+    const std::string said = readFile(f / "said");
+    CAPTURE(said);
+    REQUIRE(mentions(said, "is the disk full? It is kept as '" + f / "elsewhere/points-"));
+    const std::string kept = said.substr(said.find("kept as '") + 9);
+    const std::string text = readFile(kept.substr(0, kept.find('\'')));
+    CHECK(std::count(text.begin(), text.end(), '\n') == 31);
+}
+
 TEST_CASE("A table that cannot be printed is a failure", "[tools][outputs]")
 {
     const Inputs in;

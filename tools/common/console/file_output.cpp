@@ -142,13 +142,39 @@ void OutputFile::commit()
     committed_ = true;
 }
 
-static void writeInto(const OutputFile& file, const std::string& path, const std::string& text)
+//! @return whether it could
+static bool write(const std::string& path, const std::string& text)
 {
-    std::ofstream out(file.temporary(), std::ios::binary);
+    std::ofstream out(path, std::ios::binary);
     out << text;
     out.close();
-    if (!out)
-        throw Failure("cannot write '" + path + "': is the disk full?");
+    return (bool)out;
+}
+
+/** Minutes of work, of which no output could be written, in the folder for temporary files under a name that nobody has.
+@return where; empty: not there either */
+static std::string keptElsewhere(const std::string& path, const std::string& text)
+{
+    std::error_code error;
+    const fs::path folder = fs::temp_directory_path(error), name(path);
+    const std::string extension = name.extension().string();
+    std::string kept = (folder/(name.stem().string() + "-XXXXXX" + extension)).string();
+    const int descriptor = error ? -1 : mkstemps(kept.data(), (int)extension.size());
+    if (descriptor < 0)
+        return "";
+    close(descriptor);
+    if (write(kept, text))
+        return kept;
+    fs::remove(kept, error);
+    return "";
+}
+
+static void writeInto(const OutputFile& file, const std::string& path, const std::string& text)
+{
+    if (write(file.temporary(), text))
+        return;
+    const std::string kept = keptElsewhere(path, text);
+    throw Failure("cannot write '" + path + "': is the disk full?" + (kept.empty() ? "" : " It is kept as '" + kept + "'"));
 }
 
 void writeText(const std::string& path, const std::string& text)
