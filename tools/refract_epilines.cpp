@@ -110,7 +110,7 @@ std::string contradictionOf(const Calibration& rig, const Target& target, const 
     const double sigma = pixelSigmaOf(rig);
     Measurement measured = measureRig(rig, {points, partners}, sigma);
     checkConsistency(rig, sigma, measured);
-    if (2*measured.inconsistent() <= measured.seenPoints())
+    if (2*measured.contradicting() <= measured.seenPoints())
         return "";
     View view;
     view.objectPoints = target.objectPoints();
@@ -118,7 +118,7 @@ std::string contradictionOf(const Calibration& rig, const Target& target, const 
     view.glass[0] = points;
     view.glass[1] = partners;
     const std::string cause = causesOf(rig, {view}, sigma);
-    return format("%d of %d points are off their curves by more than noise and calibration explain: ", measured.inconsistent(),
+    return format("%d of %d points are off their curves by more than noise and calibration explain: ", measured.contradicting(),
                   measured.seenPoints())
         + (cause.empty() ? "are the images of one moment, of this rig, and in its cameras' order?" : "what explains them: " + cause);
 }

@@ -303,7 +303,7 @@ bool mostContradict(const std::vector<Measurement>& results)
     for (const Measurement& m : results)
     {
         all += m.seenPoints();
-        wrong += m.inconsistent() + (int)std::count(m.status.begin(), m.status.end(), OUTSIDE_IMAGE);
+        wrong += m.contradicting() + (int)std::count(m.status.begin(), m.status.end(), OUTSIDE_IMAGE);
     }
     return 2*wrong > all;
 }
@@ -545,10 +545,11 @@ int refract_measure_main(int argc, char** argv)
             answers += m.answers();
         if (!answers)
         {
-            const std::string cause = !outside.empty() || contradiction.empty() ? "" : causeOf(options, calibration, measured);
+            const std::string cause = outside.empty() ? causeOf(options, calibration, measured) : "";
             throw Failure(!outside.empty() ? outside
-                          : contradiction.empty() ? "no point could be measured: are images and calibration of the same cameras?"
-                          : contradiction + (cause.empty() ? "" : ". What explains them: " + cause));
+                          : !contradiction.empty() ? contradiction + (cause.empty() ? "" : ". What explains them: " + cause)
+                          : "no point could be measured" + (cause.empty() ? ": are images and calibration of the same cameras?"
+                                                                          : ". What explains it: " + cause));
         }
         for (const std::string& text : {outside, contradiction})
             if (!text.empty())

@@ -217,6 +217,22 @@ TEST_CASE("refract_epilines shows that the partners lie on their curves", "[tool
     CHECK(mentions(exchanged.err, "off their curves"));
     CHECK(std::filesystem::exists(folder / "exchanged.png"));
 
+    // Rays that meet behind the cameras only are off their curves, too: camera 2 to the other side.
+    std::string calib = readFile(STEREO + "/truth.yml");
+    const std::string T = "data: [ -2.1147", other = "data: [ +2.1147";
+    REQUIRE(calib.find(T) != std::string::npos);
+    writeFile(folder / "other.yml", calib.replace(calib.find(T), T.size(), other));
+    const std::string images = " " + image("measure1/z600_1") + " " + image("measure2/z600_1") + TARGET;
+    const ToolResult behind = runTool("refract_epilines " + folder / "other.yml" + images + " --out=" + folder / "other.png");
+    CAPTURE(behind.out, behind.err);
+    CHECK(behind.code == 2);
+    CHECK(mentions(behind.err, "30 of 30 points are off their curves"));
+    const ToolResult measured = runTool("refract_measure " + folder / "other.yml" + images + " --pixel-sigma=0.014 --out="
+                                        + folder / "other.csv");
+    CAPTURE(measured.err);
+    CHECK(measured.code == 1);
+    CHECK(mentions(measured.err, "What explains it: "));
+
     std::ofstream(folder / "points.txt") << "# u v\n640 500\n300.5, 420.25\n";
     std::ofstream(folder / "points.csv") << "id,u1,v1,u2\n0,640,500,1\n1,nan,nan,2\n";
     for (const std::string name : {"points.txt", "points.csv"})

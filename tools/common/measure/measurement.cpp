@@ -37,14 +37,29 @@ int Measurement::inconsistent() const
     return (int)std::count(status.begin(), status.end(), INCONSISTENT);
 }
 
+namespace {
+
+bool isSeenAt(const Measurement& m, size_t i)
+{
+    const auto views = std::count_if(m.pixels.begin(), m.pixels.end(), [i](const auto& image) { return seen(image[i]); });
+    return views >= (m.pixels.size() == 1 ? 1 : 2);
+}
+
+} // namespace
+
 int Measurement::seenPoints() const
 {
     int count = 0;
     for (size_t i = 0; i < points.size(); i++)
-    {
-        const auto views = std::count_if(pixels.begin(), pixels.end(), [i](const auto& image) { return seen(image[i]); });
-        count += views >= (pixels.size() == 1 ? 1 : 2);
-    }
+        count += isSeenAt(*this, i);
+    return count;
+}
+
+int Measurement::contradicting() const
+{
+    int count = 0;
+    for (size_t i = 0; i < points.size(); i++)
+        count += status[i] == INCONSISTENT || (status[i] != 0 && status[i] != OUTSIDE_IMAGE && isSeenAt(*this, i));
     return count;
 }
 

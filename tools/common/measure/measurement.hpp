@@ -32,6 +32,7 @@ struct Measurement
     int answers() const;                            //!< points that are not NaN
     int inconsistent() const;
     int seenPoints() const;                         //!< that the image shows, or at least two
+    int contradicting() const;                      //!< inconsistent, or of rays that meet nowhere before the cameras
 };
 
 //! The observations of a view by the first cameras, through their windows.
