@@ -813,6 +813,29 @@ TEST_CASE("refract_calib's summary says for machines what the table says, with t
     }
 }
 
+TEST_CASE("A focal length that is far from the images' is named", "[calib_tool][mistakes]")
+{
+    const TemporaryFolder f;
+    writeScene(f, SceneOptions(), 117);
+    for (const char* wrong : {"24380.7", "243.807", "8.4"})         // a decimal point elsewhere; millimetres
+        for (bool paired : {true, false})
+        {
+            FileStorage camera(f / "wrong.yml", FileStorage::WRITE);
+            Mat K = PaperRig().K[0].clone();
+            K.at<double>(0, 0) = K.at<double>(1, 1) = std::stod(wrong);
+            camera << "camera_matrix" << K << "distortion_coefficients" << PaperRig().dist << "image_width" << IMAGE.width
+                   << "image_height" << IMAGE.height;
+            camera.release();
+            const std::string more = PANE + std::string(paired ? "" : " --unpaired") + " --camera=" + f / "wrong.yml";
+            const ToolResult r = runTool(brief(f, more, paired));
+            CAPTURE(wrong, paired, r.out, r.err);
+            CHECK(r.code == 1);
+            const bool isFreed = mentions(r.err, "contradict --camera: set free, the focal length would be ");
+            CHECK((isFreed || mentions(r.err, std::string(" px in place of ") + wrong)));
+            CHECK_FALSE(mentions(r.err, "--square"));
+        }
+}
+
 TEST_CASE("refract_calib leaves wrong points and moved boards out, and names them", "[calib_tool]")
 {
     const TemporaryFolder f;

@@ -89,8 +89,14 @@ bool hasBothStates(const CalibrationInput& input)
     return direct && glass;
 }
 
+bool knowsLenses(const CalibrationInput& input)
+{
+    return std::any_of(input.options.known.begin(), input.options.known.end(), [](const auto& lens) { return bool(lens); });
+}
+
 //! Not a value near what is given.
 const Mistake FAR_OFF[] = {
+    {knowsLenses, wrongFocalLength},
     {hasBothStates, swappedStates},
     {[](const CalibrationInput& input) { return !hasBoardsOnly(input); }, mirroredPoints},
     {[](const CalibrationInput&) { return true; }, wrongMedium},

@@ -3,6 +3,7 @@
 
 #include "diagnose/value_mistakes.hpp"
 #include "diagnose/fit_quality.hpp"
+#include "calibrate/pinhole_rig.hpp"
 #include "calibrate/units.hpp"
 #include "calibrate/starting_model.hpp"
 #include "calibrate/window_face.hpp"
@@ -193,6 +194,38 @@ Explanation wrongShape(const CalibrationInput& input)
         attempt(other, GLASS_FREE_RADIUS, "--window=dome --radius=... (of the drawing)");
     }
     return best;
+}
+
+Explanation wrongFocalLength(const CalibrationInput& input)
+{
+    const double FAR = 1.5;             // times; what is nearer, a fit that starts from it tells
+    const int COEFFICIENTS = 5;
+    RigOptions options = input.options;
+    std::string sentence;
+    try
+    {
+        for (int c = 0; c < input.data.cameraCount; c++)
+        {
+            if (!options.known[c])
+                continue;
+            const double given = options.known[c]->cameraMatrix().at<double>(0, 0);
+            const auto pinhole = calibratePinholeThroughGlass(input.data, c, allViews(input.data), COEFFICIENTS).camera;
+            const double seen = pinhole->cameraMatrix().at<double>(0, 0);
+            if (std::max(seen/given, given/seen) < FAR)
+                continue;
+            options.known[c] = pinhole;
+            options.knownCovariance[c] = cv::Mat();
+            sentence += (sentence.empty() ? "" : ", ") + format("--camera%s: a focal length of about %.0f px in place of %g",
+                                                                c ? std::to_string(c + 1).c_str() : "", seen, given);
+        }
+    }
+    catch (const std::exception&)       // no images for a pinhole camera
+    {
+        return {"", NO_FIT};
+    }
+    if (sentence.empty())
+        return {"", NO_FIT};
+    return {sentence + " (mistyped, not in pixels, or of another camera?)", medianErrorOfFit(input.data, options)};
 }
 
 Explanation separateWindows(const CalibrationInput& input)

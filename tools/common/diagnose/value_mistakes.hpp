@@ -26,6 +26,9 @@ Explanation wrongMedium(const CalibrationInput& input);
 //! A dome taken for a pane, or a pane for a dome; the radius is estimated.
 Explanation wrongShape(const CalibrationInput& input);
 
+//! Of a lens from a file: in another unit, with a decimal point elsewhere, or of quite another lens.
+Explanation wrongFocalLength(const CalibrationInput& input);
+
 //! Cameras that were said to share a window have one each.
 Explanation separateWindows(const CalibrationInput& input);
 
