@@ -83,7 +83,8 @@ TEST_CASE("refract_export says the unit of its lengths", "[tools][export]")
 {
     const TemporaryFolder folder;
     writeFile(folder / "calib.yml", readFile(CALIB) + "unit: cm\n");
-    const ToolResult result = runTool("refract_export " + folder / "calib.yml" + " --to=opencv" + RANGE + " --out=" + folder / "central.yml");
+    const ToolResult result = runTool("refract_export " + folder / "calib.yml" + " --to=opencv" + RANGE + " --out="
+                                      + folder / "central.yml");
     CAPTURE(result.out, result.err);
     REQUIRE(result.code == 0);
     CHECK(mentions(result.out, "rms, px  max, px  rms, cm  max, cm  moved by, cm\n"));

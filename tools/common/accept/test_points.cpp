@@ -99,8 +99,8 @@ bool requireOtherImages(const TestPoints& points, const std::vector<std::string>
             }
     }
     if (!used.empty())
-        throw Failure("these images calibrated, stored anew or cropped perhaps, or their targets were not moved since, so that they prove nothing: "
-                      + listed(used) + ". Take others, with the length standard where nothing was calibrated");
+        throw Failure("these images calibrated, stored anew or cropped perhaps, or their targets were not moved since, so that they prove "
+                      "nothing: " + listed(used) + ". Take others, with the length standard where nothing was calibrated");
     return true;
 }
 
