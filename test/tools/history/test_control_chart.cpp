@@ -275,7 +275,7 @@ TEST_CASE("A trend begins where it began, with a +- that is true, and a jump is 
         return trendThrough(months, value, S, 0.01, start);
     };
     double slope = 0., since = 0., reached = 0.;
-    int ramps = 0, falsely = 0, jumps = 0, lines = 0;
+    int ramps = 0, falsely = 0, falselyAmong = 0, jumps = 0, lines = 0;
     for (int trial = 0; trial < trials; trial++)
     {
         const Trend trend = trendOf([&](double t) { return perMonth*std::max(0., t - begun); });
@@ -283,7 +283,10 @@ TEST_CASE("A trend begins where it began, with a +- that is true, and a jump is 
         slope += std::pow((trend.perMonth - perMonth)/trend.std, 2)/trials;
         since += std::pow((trend.since - start - begun*MONTH)/trend.sinceStd, 2)/trials;
         reached += std::pow((trend.reached - start - (begun + 0.01/perMonth)*MONTH)/(0.5*(trend.latest - trend.earliest)), 2)/trials;
-        falsely += trendOf([](double) { return 0.; }).isSignificant();
+        Trend none = trendOf([](double) { return 0.; });
+        falsely += none.isSignificant();
+        none.among = 20;
+        falselyAmong += none.isSignificant();
         jumps += trendOf([&](double t) { return t > begun ? 0.05 : 0.; }).step == start + 5*MONTH;
         const Trend line = trendOf([&](double t) { return perMonth*t; });
         lines += std::isnan(line.since) && std::isnan(line.step);
@@ -296,6 +299,7 @@ TEST_CASE("A trend begins where it began, with a +- that is true, and a jump is 
     CHECK(std::sqrt(since) == Approx(1.).margin(0.15));
     CHECK(std::sqrt(reached) == Approx(1.).margin(0.15));
     CHECK(falsely < 0.1*trials);            // two standard deviations
+    CHECK(20*falselyAmong < 0.2*trials);    // in any of so many parameters
     CHECK(jumps >= 0.95*trials);
     CHECK(lines >= 0.9*trials);
 }

@@ -24,6 +24,7 @@ struct Trend
     /** When it gets there: the expected time, and one standard deviation of slope and beginning to either side; NaN: the slope is not
     larger than twice its own, or it is after the 22nd century. Seconds since 1970. */
     double reached, earliest, latest;
+    int among = 1;                      //!< so many parameters it is looked for in: of twenty one seems to have one by chance
 
     bool isSignificant() const;
 };

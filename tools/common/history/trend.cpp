@@ -15,7 +15,7 @@ namespace tools {
 namespace {
 
 const double NOT_KNOWN = std::numeric_limits<double>::quiet_NaN();
-const double SIGNIFICANT = 2.;          // standard deviations of a slope
+const double SIGNIFICANT = 2.;          // standard deviations of a slope, where there is one
 const double LAST_YEAR = 4102444800.*2.;    // of a forecast, seconds since 1970
 // By how much chi^2 must fall for a beginning to be worth its parameter, and, as it was searched for, for a ramp to be one at all.
 const double WORTH_A_PARAMETER = 4., SEARCHED = 10.;
@@ -153,11 +153,15 @@ void forecast(Trend& trend, double since, const MatrixXd& C, double start)
 
 } // namespace
 
-bool Trend::isSignificant() const { return std::abs(perMonth) > SIGNIFICANT*std; }
+bool Trend::isSignificant() const
+{
+    const auto chance = [](double deviations) { return std::erfc(deviations/std::sqrt(2.)); };
+    return among*chance(std::abs(perMonth)/std) < chance(SIGNIFICANT);      // false for NaN
+}
 
 Trend trendThrough(const std::vector<double>& months, const VectorXd& value, const MatrixXd& covariance, double limit, double start)
 {
-    Trend trend{NOT_KNOWN, NOT_KNOWN, NOT_KNOWN, NOT_KNOWN, NOT_KNOWN, 0, limit, NOT_KNOWN, NOT_KNOWN, NOT_KNOWN};
+    Trend trend{NOT_KNOWN, NOT_KNOWN, NOT_KNOWN, NOT_KNOWN, NOT_KNOWN, 0, limit, NOT_KNOWN, NOT_KNOWN, NOT_KNOWN, 1};
     const size_t FEWEST = 3, FEWEST_OF_RAMP = 4;
     std::vector<double> times = months;
     times.erase(std::unique(times.begin(), times.end()), times.end());
@@ -211,6 +215,8 @@ std::vector<Trend> trendsOf(const CheckHistory& history, const MatrixXd& covaria
                 * std::abs(history.changes[c].factor)*points.back().std[(Eigen::Index)trends.size()];
             trends.push_back(trendThrough(series.months, series.value, series.covariance, limit, secondsOf(history.checks[0].time)));
         }
+    for (Trend& trend : trends)
+        trend.among = (int)trends.size();
     return trends;
 }
 
