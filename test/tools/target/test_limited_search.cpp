@@ -26,9 +26,9 @@ double secondsOf(const std::function<void()>& work)
 
 } // namespace
 
-TEST_CASE("A board that is partly out of the picture is told by what is seen of it, one that is hidden in part is not", "[limited_search]")
+TEST_CASE("A board that is partly out of the picture, or ends there, is told by what is seen of it", "[limited_search]")
 {
-    const cv::Size board(9, 6), image(640, 480);
+    const cv::Size board(9, 6);
     const auto pieceAt = [](cv::Point2f first, float step, cv::Size size) {
         SeenChessboard piece{size, {}};
         for (int row = 0; row < size.height; row++)
@@ -36,11 +36,23 @@ TEST_CASE("A board that is partly out of the picture is told by what is seen of 
                 piece.corners.push_back(first + step*cv::Point2f((float)column, (float)row));
         return piece;
     };
-    CHECK_FALSE(mayBeInView(pieceAt({20, 60}, 90, {6, 5}), board, image));          // three more columns to the left or right
-    CHECK_FALSE(mayBeInView(pieceAt({60, 20}, 90, {5, 6}), board, image));          // however it was counted
-    CHECK(mayBeInView(pieceAt({20, 60}, 40, {6, 5}), board, image));                // they would be in view
-    CHECK(mayBeInView(pieceAt({20, 60}, 90, {4, 3}), board, image));                // as much may be anything
-    CHECK(mayBeInView(SeenChessboard(), board, image));
+    const auto picture = [](cv::Point first, int step, cv::Size corners) {      // of a board with so many corners, of which this is one
+        cv::Mat image(480, 640, CV_8U, cv::Scalar(230));
+        for (int row = 0; row <= corners.height; row++)
+            for (int column = 0; column <= corners.width; column++)
+                if ((row + column) % 2 == 0)
+                    cv::rectangle(image, cv::Rect(first.x + (column - 1)*step, first.y + (row - 1)*step, step, step), cv::Scalar(30),
+                                  cv::FILLED);
+        return image;
+    };
+    const cv::Mat near = picture({20, 60}, 90, {9, 6}), turned = picture({60, 20}, 90, {6, 9}), whole = picture({60, 60}, 40, board);
+    CHECK_FALSE(mayBeInView(pieceAt({20, 60}, 90, {6, 5}), board, near));           // three more columns to the right
+    CHECK_FALSE(mayBeInView(pieceAt({60, 20}, 90, {5, 6}), board, turned));         // however it was counted
+    CHECK(mayBeInView(pieceAt({100, 100}, 40, {6, 5}), board, whole));              // they are in view
+    CHECK(mayBeInView(pieceAt({60, 60}, 40, board), board, whole));
+    CHECK_FALSE(mayBeInView(pieceAt({60, 60}, 40, {6, 5}), board, picture({60, 60}, 40, {6, 5})));      // the board ends there
+    CHECK(mayBeInView(pieceAt({20, 60}, 90, {4, 3}), board, near));                 // as much may be anything
+    CHECK(mayBeInView(SeenChessboard(), board, near));
 }
 
 TEST_CASE("What is seen of a board is looked for until it is enough", "[limited_search]")
@@ -61,7 +73,7 @@ TEST_CASE("What is seen of a board is looked for until it is enough", "[limited_
             return isEnough; }); };
     const SeenChessboard first = look(true);
     CHECK(calls == 1);
-    CHECK_FALSE(mayBeInView(first, cv::Size(9, 6), image.size()));
+    CHECK_FALSE(mayBeInView(first, cv::Size(9, 6), image));
     CHECK(look(false).size.area() == lookForChessboard(image).size.area());
 }
 

@@ -100,13 +100,13 @@ std::vector<Point2d> detectChessboard(const Mat& grey, Size size, Size* other, i
         if (!other && !checkChessboard(grey, size))         // nor would the older one find any
             return {};
         const auto isCutOff = [&](const SeenChessboard& seen) {
-            return !mayBeInView(seen, size, grey.size())
+            return !mayBeInView(seen, size, grey)
                 && isAlternating(std::vector<Point2d>(seen.corners.begin(), seen.corners.end()), seen.size, grey); };
         const SeenChessboard glance = other ? lookForChessboard(grey) : lookForChessboard(grey, isCutOff);
         const Size seenSize = sorted(glance.size) != sorted(size) ? sorted(glance.size) : Size();
         if (other)
             *other = seenSize;
-        if (seenSize.width > sorted(size).width || seenSize.height > sorted(size).height || !mayBeInView(glance, size, grey.size()))
+        if (seenSize.width > sorted(size).width || seenSize.height > sorted(size).height || !mayBeInView(glance, size, grey))
             return {};
         corners = detectByOldChessboard(grey, size, seconds);
         if (corners.empty() || !isChessboard(toDouble(corners), size, grey))

@@ -15,6 +15,7 @@ namespace {
 
 const int LEAST = 3;                // rows and columns of a piece that is worth keeping
 const int SIDE_OF_COPY = 1000;      // pixels: enough to see what is there
+const double FAINT = 0.75;          // of the contrast about a corner: about those of the outermost squares it is half
 const double ABRUPT = 1.6;          // ratio of two steps in a row; a board near and steep to the camera reaches 1.3
 
 //! x right, y down, seen from the front: the same handedness as the object points.
@@ -50,6 +51,36 @@ bool isEvenStep(const Point2d& a, const Point2d& b, const Point2d& c)
 {
     const double first = norm(b - a), second = norm(c - b);
     return !(std::max(first, second) > ABRUPT*std::min(first, second));   // true with a NaN
+}
+
+/** How much brighter one diagonal's two squares are than the other's about each of these corners of a grid, on average; the other way round
+about every second corner. NaN: the squares are out of the image.
+@param H grid to image */
+double alternation(const Mat& grey, const Mat& H, const Rect& corners)
+{
+    const Rect2d inside(1, 1, grey.cols - 2, grey.rows - 2);
+    double sum = 0;
+    int count = 0;
+    for (int row = corners.y; row < corners.br().y; row++)
+        for (int column = corners.x; column < corners.br().x; column++)
+        {
+            const Point2f at((float)column, (float)row);
+            std::vector<Point2f> centres;
+            perspectiveTransform(std::vector<Point2f>{at + Point2f(-0.5f, -0.5f), at + Point2f(0.5f, 0.5f), at + Point2f(-0.5f, 0.5f),
+                                                      at + Point2f(0.5f, -0.5f)}, centres, H);
+            if (!std::all_of(centres.begin(), centres.end(), [&](const Point2f& p) { return inside.contains(Point2d(p)); }))
+                continue;
+            double brightness[4];
+            for (int k = 0; k < 4; k++)
+            {
+                Mat patch;
+                getRectSubPix(grey, Size(3, 3), centres[k], patch);
+                brightness[k] = mean(patch)[0];
+            }
+            sum += ((row + column) % 2 ? -1 : 1)*(brightness[0] + brightness[1] - brightness[2] - brightness[3]);
+            count++;
+        }
+    return sum/count;
 }
 
 } // namespace
@@ -107,10 +138,10 @@ SeenChessboard lookForChessboard(const Mat& grey, const std::function<bool(const
     return largest;
 }
 
-bool mayBeInView(const SeenChessboard& piece, Size size, Size image)
+bool mayBeInView(const SeenChessboard& piece, Size size, const Mat& grey)
 {
     const int TELLING = 4;              // a smaller part of a board is seen in many things
-    const double BENT = 0.05;           // of the image: a lens bends rows
+    const double BENT = 0.05;           // of the image, by which a lens bends as many rows or columns again
     if (TELLING*piece.size.area() < size.area())
         return true;
     std::vector<Point2f> grid;
@@ -118,19 +149,32 @@ bool mayBeInView(const SeenChessboard& piece, Size size, Size image)
         for (int column = 0; column < piece.size.width; column++)
             grid.emplace_back((float)column, (float)row);
     const Mat H = findHomography(grid, piece.corners);
-    const Point2d room(BENT*image.width, BENT*image.height);
-    const Rect2d within(-room, Point2d(image.width, image.height) + room);
+    if (H.empty())
+        return true;
+    const double usual = alternation(grey, H, Rect(Point(), piece.size));
+    const auto goesOn = [&](const Rect& corners) { return !(alternation(grey, H, corners)/usual < FAINT); };    // true with a NaN
+    const int columns = piece.size.width, rows = piece.size.height;
+    const bool left = goesOn({-1, 0, 1, rows}), right = goesOn({columns, 0, 1, rows});
+    const bool up = goesOn({0, -1, columns, 1}), down = goesOn({0, rows, columns, 1});
     for (const Size board : {size, Size(size.height, size.width)})
-        for (int right = 0; right <= board.width - piece.size.width && !H.empty(); right++)
-            for (int down = 0; down <= board.height - piece.size.height; down++)
+    {
+        const double again = std::max((double)(board.width - columns)/columns, (double)(board.height - rows)/rows);
+        const Point2d room = again*Point2d(BENT*grey.cols, BENT*grey.rows);
+        const Rect2d within(-room, Point2d(grey.cols, grey.rows) + room);
+        for (int before = 0; before <= board.width - columns; before++)
+            for (int above = 0; above <= board.height - rows; above++)
             {
-                const Point2f first((float)-right, (float)-down), last = first + Point2f((float)board.width - 1, (float)board.height - 1);
+                if ((before > 0 && !left) || (before < board.width - columns && !right) || (above > 0 && !up)
+                    || (above < board.height - rows && !down))
+                    continue;
+                const Point2f first((float)-before, (float)-above), last = first + Point2f((float)board.width - 1, (float)board.height - 1);
                 std::vector<Point2f> corners;
                 perspectiveTransform(std::vector<Point2f>{first, {last.x, first.y}, last, {first.x, last.y}}, corners, H);
                 if (std::all_of(corners.begin(), corners.end(), [&](const Point2f& p) { return within.contains(Point2d(p)); }))
                     return true;
             }
-    return H.empty();
+    }
+    return false;
 }
 
 bool isEvenGrid(const std::vector<Point2d>& points, Size size)

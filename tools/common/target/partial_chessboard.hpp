@@ -33,9 +33,10 @@ struct SeenChessboard
 @param isEnough of one that is seen: no larger one is looked for */
 SeenChessboard lookForChessboard(const cv::Mat& grey, const std::function<bool(const SeenChessboard&)>& isEnough = nullptr);
 
-/** False if a piece of the board was seen, and wherever on the board that piece may be, a part of the board is out of the image.
+/** False if a piece of the board was seen, and wherever on the board that piece may be, a part of the board is out of the image, or no
+squares are where the next ones of the board would be.
 @param size of the whole board */
-bool mayBeInView(const SeenChessboard& piece, cv::Size size, cv::Size image);
+bool mayBeInView(const SeenChessboard& piece, cv::Size size, const cv::Mat& grey);
 
 /** False if the steps along some row or column change more abruptly than perspective can make them: the detector has
 skipped corners, or taken cut squares for whole ones. NaN points are passed over. */
