@@ -29,9 +29,7 @@ Mat_<double> squaresOf(const std::vector<Point2d>& points, Size size, const Mat&
         {
             const int i = row*size.width + column;
             const Point2d centre = 0.25*(points[i] + points[i + 1] + points[i + size.width] + points[i + size.width + 1]);
-            Mat patch;
-            getRectSubPix(grey, Size(3, 3), Point2f(centre), patch);
-            squares(row, column) = mean(patch)[0];
+            squares(row, column) = brightnessAt(grey, Point2f(centre));
         }
     return squares;
 }

@@ -70,20 +70,21 @@ double alternation(const Mat& grey, const Mat& H, const Rect& corners)
                                                       at + Point2f(0.5f, -0.5f)}, centres, H);
             if (!std::all_of(centres.begin(), centres.end(), [&](const Point2f& p) { return inside.contains(Point2d(p)); }))
                 continue;
-            double brightness[4];
             for (int k = 0; k < 4; k++)
-            {
-                Mat patch;
-                getRectSubPix(grey, Size(3, 3), centres[k], patch);
-                brightness[k] = mean(patch)[0];
-            }
-            sum += ((row + column) % 2 ? -1 : 1)*(brightness[0] + brightness[1] - brightness[2] - brightness[3]);
+                sum += (((row + column) % 2 != 0) == (k < 2) ? -1 : 1)*brightnessAt(grey, centres[k]);
             count++;
         }
     return sum/count;
 }
 
 } // namespace
+
+double brightnessAt(const Mat& grey, const Point2f& pixel)
+{
+    Mat patch;
+    getRectSubPix(grey, Size(3, 3), pixel, patch);
+    return mean(patch)[0];
+}
 
 std::vector<Point2d> detectPartialChessboard(const Mat& grey, Size size)
 {

@@ -10,6 +10,9 @@
 
 namespace tools {
 
+//! Of a few pixels about one.
+double brightnessAt(const cv::Mat& grey, const cv::Point2f& pixel);
+
 /** A piece of a chessboard that is partly out of view, hidden or cut.
 
 Nothing tells which piece of the board it is, so it is put at the grid's first row and column: the points of one image
