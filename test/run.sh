@@ -8,7 +8,7 @@
 #   without an option: the library, its tests and those of the tools that do not take a minute each. Ten minutes on two cores.
 #   --all      the gate: these, what else a change may break (instruction sets, Python, OpenCV's own tree, packages, samples, the
 #              commands of the documentation), and by turns, as much as an hour has time for: a third of the other tests, the module
-#              under sanitizers, the fuzzers, one slice of what is rare or slow
+#              under sanitizers, the fuzzers, one slice of what is rare or slow. What the hour cuts off counts as skipped
 #   --release  the gate and all of the slices: hours
 #   --slices   lists the slices (test/slices.sh): at which commit each was last green, and since when its inputs have changed
 #   --slice NAME    runs one of them; --record writes into test/slices.txt that it was green
@@ -29,7 +29,10 @@ case $scope in
   *) usage ;;
 esac
 begun=$(date +%s)
-after() { echo "$(($(date +%s) - begun)) s"; }      # since the beginning: what takes long shows
+elapsed() { echo $(($(date +%s) - begun)); }
+after() { echo "$(elapsed) s"; }                    # since the beginning: what takes long shows
+deadline=""                                         # in seconds since the beginning: test/gate.sh sets it
+left() { seconds=$((${deadline:-100000} - $(elapsed))); echo $((seconds > 1 ? seconds : 1)); }
 for kind in $kinds; do      # all at once, as what runs side by side must not wait for the other's apt
   tools/install_dependencies.sh "$kind"
 done
@@ -44,8 +47,10 @@ build() {   # build DIRECTORY OPTIONS...; only the targets in $targets, if there
   directory=$1; shift
   since=$(date +%s)
   cmake -S . -B "$directory" -G Ninja -DREFRACT_WERROR=ON "$@" >"$directory.log" 2>&1 || { cat "$directory.log"; exit 1; }
+  code=0
   # shellcheck disable=SC2086  # names without blanks
-  cmake --build "$directory" --target ${targets:-all}
+  timeout "$(left)" cmake --build "$directory" --target ${targets:-all} || code=$?
+  [ $code = 0 ] || [ $code = 124 ] || exit 1      # 124: no time is left, so its suite does not begin
   compiling=$((compiling + $(date +%s) - since))
   echo "built after $(after): $directory"
 }
@@ -65,14 +70,20 @@ run() {     # run NAME COMMAND...: counts one test; exit code 77 = skipped
 suite() {   # suite NAME BUILD OPTIONS_OF_CTEST...: counts its tests one by one
   name=$1; directory=$2; shift 2
   log=build/$(echo "$name" | tr -c 'a-z0-9\n' _).log
-  rm -f "$log.xml"
-  ctest --test-dir "$directory" -j "$(nproc)" --timeout 1500 --output-on-failure --output-junit "$PWD/$log.xml" "$@" >"$log" 2>&1 ||
-    true
-  cp "$directory/Testing/Temporary/LastTest.log" "$log.all"
+  rm -f "$log.xml" "$directory"/Testing/Temporary/LastTest.log*
+  [ "$(left)" -gt 1 ] || { skipped=$((skipped + 1)); echo "left for its turn, as the hour is over: $name"; return; }
+  code=0
+  timeout "$(left)" ctest --test-dir "$directory" -j "$(nproc)" --timeout 1500 --output-on-failure \
+    --output-junit "$PWD/$log.xml" "$@" >"$log" 2>&1 || code=$?
+  cat "$directory"/Testing/Temporary/LastTest.log* >"$log.all"      # with .tmp behind it where ctest was stopped
   grep '^\[numbers\]' "$log.all" || true
   count() { sed -n "s/.*[[:space:]]$1=\"\([0-9]*\)\".*/\1/p" "$log.xml" | head -n 1; }
   total=0; f=1; s=0       # no tests, or a ctest that died, is a failure
-  if [ -s "$log.xml" ] && [ "$(count tests)" -gt 0 ]; then
+  if [ $code = 124 ]; then  # those that ended before the hour did
+    f=$(grep -c '[*][*][*]\(Failed\|Exception\|Timeout\)' "$log" || true)
+    s=1; total=$(($(grep -c ' Passed  ' "$log" || true) + f + s))
+    echo "stopped, as the hour is over: $name"
+  elif [ -s "$log.xml" ] && [ "$(count tests)" -gt 0 ]; then
     total=$(count tests); f=$(count failures); s=$(($(count skipped) + $(count disabled)))
   fi
   failed=$((failed + f)); skipped=$((skipped + s))
