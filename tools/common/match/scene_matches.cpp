@@ -196,13 +196,21 @@ SceneMatcher::SceneMatcher(const Calibration& calibration, const SceneOptions& o
 
 ScaledMatches SceneMatcher::matchesOf(const std::string& moment, const std::vector<Mat>& images) const
 {
+    // Side by side, as a detector by itself is busy on one processor for most of its time.
     std::vector<Features> features(images.size());
-    for (size_t c = 0; c < images.size(); c++)
-        if (!images[c].empty())
-            features[c] = featuresOf(images[c], options_.mostFeatures, options_.features);
-    std::vector<PairMatches> matches;
-    for (const CameraPair& pair : pairs_)
-        matches.push_back({pair.first, pair.second, partnersNearCurves(input_.rig, pair, features[pair.first], features[pair.second])});
+    parallel_for_(Range(0, (int)images.size()), [&](const Range& range) {
+        for (int c = range.start; c < range.end; c++)
+            if (!images[c].empty())
+                features[c] = featuresOf(images[c], options_.mostFeatures, options_.features);
+    });
+    std::vector<PairMatches> matches(pairs_.size());
+    parallel_for_(Range(0, (int)pairs_.size()), [&](const Range& range) {
+        for (int i = range.start; i < range.end; i++)
+        {
+            const CameraPair& pair = pairs_[i];
+            matches[i] = {pair.first, pair.second, partnersNearCurves(input_.rig, pair, features[pair.first], features[pair.second])};
+        }
+    });
     return matchesOfChains(moment, features, chainsOf(features, matches));
 }
 
