@@ -166,6 +166,17 @@ TEST_CASE("Images through the window decide where there is no other, and where t
     CHECK_THAT(choice.sentence(), Catch::Contains("held-out images through the window"));
     CHECK(choice.lens().coefficients <= 4);
     CHECK(choice.lens().coefficients >= 1);
+    // What it leaves out is in every +-, and tells no lens: the rig is as sealed as before.
+    setLens(choice, options);
+    REQUIRE(options.carriedCoefficients(0) > choice.lens().coefficients);
+    std::vector<LensSource> sources;
+    const RigModel start = startModel(data, options, sources);
+    RigModel exact = start.clone();
+    exact.known.clear();
+    const Fit open = fitAllImages(data, start, sources, options.flags), closed = fitAllImages(data, exact, sources, options.flags);
+    CHECK(open.stdDeviations.at<double>(INTRINSICS + 4) > 0.);
+    CHECK(closed.stdDeviations.at<double>(INTRINSICS + 4) == 0.);
+    CHECK(open.stdDeviations.at<double>(0) > closed.stdDeviations.at<double>(0));       // of fx
 }
 
 TEST_CASE("No fisheye is chosen where boards that are nearly parallel to the image tell no focal length", "[lens_choice]")

@@ -135,7 +135,7 @@ LensChoice chooseCoefficients(const RigData& data, const LensImages& images, boo
         const int chosen = selectLensCoefficients(images.object, images.direct, images.glass, cameras, windows, Rs, Ts, flags, scores,
                                                   leftOut);
         choice.leftOut.resize(data.cameraCount);
-        for (size_t k = 0; k < cameras.size() && choice.direct; k++)        // through a window they exchange with its place
+        for (size_t k = 0; k < cameras.size(); k++)
             choice.leftOut[images.cameras[k]] = leftOut[k];
         for (int i = 0; i < scores.rows; i++)
         {

@@ -1552,7 +1552,7 @@ of mean 0 for coefficients that are left out (up to OpenCV's five, or the next o
 the images nor the corners of an image show. Those along the radius (k) have one standard deviation in pixels at the image's
 corner, the tangential ones (p) another: the largest within half a unit of log likelihood of the likeliest (evidence,
 @cite MacKay1992); of fewer than 4 views the likeliest. A calibration that is given it states what a simpler lens than the true
-one would leave out. It was measured for images without the window; through windows lenses exchange with these.
+one would leave out. Through windows, with whose places coefficients exchange, it is wider by what that leaves open.
 */
 CV_EXPORTS_AS(selectLensCoefficientsExtended) int selectLensCoefficients(InputArrayOfArrays objectPoints,
         const std::vector<std::vector<Mat> >& imagePointsDirect,

@@ -129,9 +129,9 @@ Mat toMat(const std::vector<OtherMinimum>& minima)
 }
 
 //! A sealed rig exchanges its parameters for each other: asked of it is only what the caller names.
-int requiredOf(const RigTask& task)
+int requiredOf(const RigTask& task, const Rig& rig)
 {
-    return task.isSealed() ? task.flags & REQUIRE_ALL : REQUIRE_ALL;
+    return task.isSealed(rig) ? task.flags & REQUIRE_ALL : REQUIRE_ALL;
 }
 
 /** Of a fit that goes on to where a camera touches its dome: what images do not tell, by name; converged: there is no such. */
@@ -270,7 +270,7 @@ static FitOutcome fitSeen(Rig& rig, const RigTask& given, RigFit& fit)
     // First, as what is undetermined is also what does not converge.
     const double variance = outcome.varianceFactor*problem.squaredError()/problem.freedom();
     Covariance covariance;
-    const FitOutcome determined = covariance.compute(problem, variance, requiredOf(task));
+    const FitOutcome determined = covariance.compute(problem, variance, requiredOf(task, problem.rig()));
     if (determined.converged() && !outcome.converged())
     {
         const FitOutcome atDomes = centersAtDomes(problem);

@@ -26,8 +26,8 @@ struct RigTask
     bool isRobust() const { return (flags & GLASS_ROBUST) != 0; }
     //! Neither direct images nor poses.
     bool isThroughWindowsOnly() const;
-    //! Images through the windows alone have to tell the lenses too, and nothing is known of the cameras.
-    bool isSealed() const;
+    //! Images through the windows alone have to tell the lenses too, and of the cameras only coefficients may be known (to be small).
+    bool isSealed(const Rig& rig) const;
     //! The flags of a search for where the fit begins, which has no priors: a lens that something tells stays as it is.
     int searchFlags() const;
     //! Images through the windows alone have to tell where the cameras are, and windows or lenses: each camera is fitted alone first.

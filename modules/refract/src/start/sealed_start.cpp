@@ -90,17 +90,24 @@ static bool tells(const Eigen::MatrixXd& covariance, int first, int count)
     return false;
 }
 
-bool RigTask::isSealed() const
+//! Of coefficients all may be known to be small, which is no start, and leaves a rig sealed.
+static const int FOCAL_LENGTHS_AND_CENTRE = 4;
+
+bool RigTask::isSealed(const Rig& rig) const
 {
-    const bool tellsMore = std::any_of(cameraPriors.begin(), cameraPriors.end(), [](const CameraPrior& prior)
-                                       { return prior.covariance.size() > 0; });
+    bool tellsMore = false;
+    for (size_t c = 0; c < cameraPriors.size(); c++)
+    {
+        const Eigen::MatrixXd& prior = cameraPriors[c].covariance;
+        const int lens = rig.cameras[c].lensCount();
+        tellsMore = tellsMore || tells(prior, 0, FOCAL_LENGTHS_AND_CENTRE) || tells(prior, lens, (int)prior.rows() - lens);
+    }
     return isThroughWindowsOnly() && !tellsMore && (flags & GLASS_FREE_INTRINSICS);
 }
 
 int RigTask::searchFlags() const
 {
     bool isLensKnown = !isThroughWindowsOnly();
-    const int FOCAL_LENGTHS_AND_CENTRE = 4;         // of coefficients all may be known to be small, which is no start
     for (const CameraPrior& prior : cameraPriors)
         isLensKnown = isLensKnown || tells(prior.covariance, 0, FOCAL_LENGTHS_AND_CENTRE);
     return isLensKnown ? flags & ~GLASS_FREE_INTRINSICS : flags;
