@@ -8,6 +8,7 @@
 #include "console/cli.hpp"
 #include "console/file_output.hpp"
 #include "console/frames.hpp"
+#include "console/median.hpp"
 #include "console/outputs.hpp"
 #include "console/progress.hpp"
 #include "console/table.hpp"
@@ -26,7 +27,6 @@
 #include <cmath>
 #include <filesystem>
 #include <iostream>
-#include <limits>
 
 static const char MANUAL[] = R"(Measures the depth of every pixel that two cameras see through their windows.
 
@@ -187,14 +187,11 @@ cv::Vec2d foundRange(const Calibration& rig, PairReader& reader, const std::vect
 //! The median: a few far points have any sz.
 double typicalSigmaZ(const Cloud& cloud)
 {
-    std::vector<float> known;
+    std::vector<double> known;
     for (const CloudPoint& point : cloud)
         if (point.sigma[2] == point.sigma[2])
             known.push_back(point.sigma[2]);
-    if (known.empty())
-        return std::numeric_limits<double>::quiet_NaN();
-    std::nth_element(known.begin(), known.begin() + known.size()/2, known.end());
-    return known[known.size()/2];
+    return median(known);
 }
 
 class Tool

@@ -7,6 +7,7 @@
 #include "calibrate/units.hpp"
 #include "calibrate/window_face.hpp"
 #include "console/failure.hpp"
+#include "console/median.hpp"
 #include "console/table.hpp"
 
 #include <algorithm>
@@ -285,8 +286,7 @@ double ratioOfLengths(const BundleStart& start, const Matches& matches, const Gi
     }
     if (ratios.empty())
         return 0.;
-    std::nth_element(ratios.begin(), ratios.begin() + ratios.size()/2, ratios.end());
-    return ratios[ratios.size()/2];
+    return median(ratios);
 }
 
 } // namespace

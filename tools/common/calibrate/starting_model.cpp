@@ -6,6 +6,7 @@
 #include "calibrate/parameter_columns.hpp"
 #include "calibrate/pinhole_camera.hpp"
 #include "console/failure.hpp"
+#include "console/median.hpp"
 #include "console/table.hpp"
 #include <opencv2/calib3d.hpp>
 #include <algorithm>
@@ -102,8 +103,7 @@ double relativePoseError(const std::vector<BoardInBoth>& boards, const RigidTran
         }
         errors.push_back(sum);
     }
-    std::nth_element(errors.begin(), errors.begin() + errors.size()/2, errors.end());
-    return errors[errors.size()/2];
+    return median(errors);
 }
 
 //! Camera 1 -> camera 2: of the boards, the one that fits the others best.

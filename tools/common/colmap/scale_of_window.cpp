@@ -3,6 +3,7 @@
 
 #include "colmap/scale_of_window.hpp"
 #include "console/failure.hpp"
+#include "console/median.hpp"
 #include "console/progress.hpp"
 
 #include <algorithm>
@@ -177,8 +178,7 @@ double medianDepth(const Survey& survey)
     std::vector<double> depths;
     for (size_t i = 0; i < survey.sources.size(); i += 1 + survey.sources.size()/10000)
         depths.push_back((transformOf(survey.imageOf((int)i).cam_from_world)*survey.model.points[survey.observations[i][2]].X)[2]);
-    std::nth_element(depths.begin(), depths.begin() + depths.size()/2, depths.end());
-    return depths[depths.size()/2];
+    return median(depths);
 }
 
 //! Of the farthest glass from a camera.

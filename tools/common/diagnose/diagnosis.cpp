@@ -9,6 +9,7 @@
 #include "diagnose/value_mistakes.hpp"
 #include "calibrate/image_fit.hpp"
 #include "console/failure.hpp"
+#include "console/median.hpp"
 #include "console/table.hpp"
 #include <algorithm>
 #include <iterator>
@@ -161,8 +162,7 @@ double allowedError(const CalibrationInput& input)
     scales.erase(std::remove_if(scales.begin(), scales.end(), [](double scale) { return std::isnan(scale); }), scales.end());
     if (scales.empty())
         return 0.;
-    std::nth_element(scales.begin(), scales.begin() + scales.size()/2, scales.end());
-    return MEDIAN*scales[scales.size()/2]*input.options.std.placement;
+    return MEDIAN*median(scales)*input.options.std.placement;
 }
 
 /** What leaves more than the images' own noise, and than what --placement-std allows, explains only a part.

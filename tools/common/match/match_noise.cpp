@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "match/match_noise.hpp"
+#include "console/median.hpp"
 #include "measure/chi_squared.hpp"
 
 #include <algorithm>
@@ -79,8 +80,7 @@ MatchNoise noiseOfMedian(const std::vector<MatchResidual>& residuals)
             all.push_back(r.squares/r.count);
     if (all.empty())
         return {};
-    std::nth_element(all.begin(), all.begin() + all.size()/2, all.end());
-    return {std::sqrt(all[all.size()/2]/MEDIAN)};
+    return {std::sqrt(median(all)/MEDIAN)};
 }
 
 } // namespace

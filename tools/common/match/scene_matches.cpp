@@ -3,6 +3,7 @@
 
 #include "match/scene_matches.hpp"
 #include "console/failure.hpp"
+#include "console/median.hpp"
 #include "console/progress.hpp"
 #include "bundle/bundle_adjustment.hpp"
 #include "calibrate/parameter_columns.hpp"
@@ -102,11 +103,7 @@ std::string mistakeIn(const Calibration& calibration, std::vector<Frames>& camer
 //! In units of the usual distance of descriptors.
 void makeRelative(std::vector<double>& unlike)
 {
-    if (unlike.empty())
-        return;
-    std::vector<double> sorted = unlike;
-    std::nth_element(sorted.begin(), sorted.begin() + sorted.size()/2, sorted.end());
-    const double usual = sorted[sorted.size()/2];
+    const double usual = median(unlike);
     for (double& of : unlike)
         of = usual > 0. ? of/usual : 1.;
 }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "measure/consistency.hpp"
+#include "console/median.hpp"
 #include "measure/eigen_matrix.hpp"
 #include "measure/point_derivatives.hpp"
 #include "calibrate/parameter_columns.hpp"
@@ -145,8 +146,7 @@ double timesNoisier(const std::vector<ConsistencyResidual>& residuals, double pi
     const double byNoise = 1 + 4.7/std::sqrt((double)dof);                // four standard deviations of the median's estimate
     const double byCalibration = USUAL/MEDIAN;
     const double byChance = std::sqrt(pixelNoise*byNoise*byNoise + (1 - pixelNoise)*byCalibration*byCalibration);
-    std::nth_element(ratios.begin(), ratios.begin() + ratios.size()/2, ratios.end());
-    const double times = ratios[ratios.size()/2];
+    const double times = median(ratios);
     return times > byChance ? times : 1.;
 }
 

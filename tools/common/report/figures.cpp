@@ -4,6 +4,7 @@
 #include "report/figures.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "calibrate/window_face.hpp"
+#include "console/median.hpp"
 #include "console/table.hpp"
 #include "report/plot.hpp"
 #include <algorithm>
@@ -54,8 +55,7 @@ double typicalLength(const std::vector<Residual>& residuals)
         lengths.push_back(norm(r.error));
     if (lengths.empty())
         return 0.;
-    std::nth_element(lengths.begin(), lengths.begin() + lengths.size()/2, lengths.end());
-    return lengths[lengths.size()/2];
+    return median(lengths);
 }
 
 } // namespace

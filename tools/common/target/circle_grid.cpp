@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "target/circle_grid.hpp"
+#include "console/median.hpp"
 #include "target/dot_lattice.hpp"
 #include "target/limited_search.hpp"
 #include "target/refine_dots.hpp"
@@ -159,8 +160,7 @@ std::vector<double> dotRadii(const BoardMap& map, const std::vector<Vec2d>& grid
     }
     if (known.empty())
         return {};
-    std::nth_element(known.begin(), known.begin() + known.size()/2, known.end());
-    const double usual = known[known.size()/2];
+    const double usual = median(known);
     for (double& radius : radii)
         if (!(radius > 0) || std::abs(radius/usual - 1) < ALIKE)
             radius = usual;
