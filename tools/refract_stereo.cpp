@@ -71,7 +71,7 @@ struct Options
     std::string matcher = "3way";
     MatcherOptions matching;
     double maxRowError = 0;             // 0: none is set
-    bool ascii = false, noWindow = false, crop = false;
+    bool noWindow = false, crop = false;
     ConditionsOptions conditions;
 };
 
@@ -245,7 +245,7 @@ private:
             if (!folder.empty())
                 makeFolder(folder);
         if (!files.cloud.empty())
-            writeCloud(files.cloud, cloud, unit, options_.ascii);
+            writeCloud(files.cloud, cloud, unit);
         if (!files.depthMap.empty())
             writeImage(files.depthMap, depth);
         if (!files.picture.empty())
@@ -332,7 +332,6 @@ void addOptions(OptionParser& parser, Options& options)
     options.conditions.addTo(parser);
     parser.addFlag("--crop", options.crop, "a part of the scene outside --depth is left out on purpose: no warning of it");
     parser.add("--max-row-error", options.maxRowError, "px: exit code 2 if the images show more").check(moreThanZero());
-    parser.addFlag("--ascii", options.ascii, "cloud as text, not binary");
     parser.addFlag("--no-window", options.noWindow, "calib.yml has no glass_window, and there is none");
 }
 

@@ -28,11 +28,11 @@ Vec3b colourAt(const cv::Mat& image, int y, int x)
     return Vec3b(bgr[2], bgr[1], bgr[0]);
 }
 
-std::string headerOf(const Cloud& cloud, const std::string& unit, bool ascii)
+std::string headerOf(const Cloud& cloud, const std::string& unit)
 {
     std::ostringstream header;
     header.imbue(std::locale::classic());
-    header << "ply\nformat " << (ascii ? "ascii" : "binary_little_endian") << " 1.0\n"
+    header << "ply\nformat binary_little_endian 1.0\n"
            << "comment refract_stereo " REFRACT_VERSION "; the frame of camera 1; s*: one standard deviation\n";
     if (!unit.empty())
         header << "comment unit " << unit << '\n';
@@ -59,7 +59,7 @@ void append(std::vector<char>& bytes, const Vec3f& numbers)
     }
 }
 
-void writeBinary(std::ostream& out, const Cloud& cloud)
+void writePoints(std::ostream& out, const Cloud& cloud)
 {
     std::vector<char> bytes;
     bytes.reserve(27*cloud.size());
@@ -71,30 +71,6 @@ void writeBinary(std::ostream& out, const Cloud& cloud)
         append(bytes, point.sigma);
     }
     out.write(bytes.data(), (std::streamsize)bytes.size());
-}
-
-void writeNumbers(std::ostream& out, const Vec3f& numbers)
-{
-    for (int i = 0; i < 3; i++)
-        if (std::isnan(numbers[i]))
-            out << " nan";
-        else
-            out << ' ' << numbers[i];
-}
-
-void writeText(std::ostream& out, const Cloud& cloud)
-{
-    for (const CloudPoint& point : cloud)
-    {
-        std::ostringstream line;
-        line.imbue(std::locale::classic());
-        line.precision(std::numeric_limits<float>::max_digits10);
-        writeNumbers(line, point.position);
-        for (int i = 0; i < 3; i++)
-            line << ' ' << (int)point.colour[i];
-        writeNumbers(line, point.sigma);
-        out << line.str().substr(1) << '\n';
-    }
 }
 
 } // namespace
@@ -113,12 +89,12 @@ Cloud cloudOf(const cv::Mat& points, const cv::Mat& image, const cv::Mat& sigma)
     return cloud;
 }
 
-void writeCloud(const std::string& path, const Cloud& cloud, const std::string& unit, bool ascii)
+void writeCloud(const std::string& path, const Cloud& cloud, const std::string& unit)
 {
     OutputFile file(path, ".ply");
     std::ofstream out(file.temporary(), std::ios::binary);
-    out << headerOf(cloud, unit, ascii);
-    ascii ? writeText(out, cloud) : writeBinary(out, cloud);
+    out << headerOf(cloud, unit);
+    writePoints(out, cloud);
     out.close();
     if (!out)
         throw Failure("cannot write '" + path + "': is the disk full?");

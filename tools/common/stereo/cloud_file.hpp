@@ -25,10 +25,8 @@ typedef std::vector<CloudPoint> Cloud;
 @param sigma CV_32FC3 as points, or empty: unknown */
 Cloud cloudOf(const cv::Mat& points, const cv::Mat& image, const cv::Mat& sigma);
 
-/** Vertices with x y z red green blue sx sy sz.
-@param unit of length, empty: unknown
-@param ascii numbers as text; else binary, little endian */
-void writeCloud(const std::string& path, const Cloud& cloud, const std::string& unit, bool ascii = false);
+//! Vertices with x y z red green blue sx sy sz, binary, little endian. @param unit of length, empty: unknown
+void writeCloud(const std::string& path, const Cloud& cloud, const std::string& unit);
 
 } // namespace tools
 
