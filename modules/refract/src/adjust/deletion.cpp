@@ -147,10 +147,10 @@ std::vector<std::vector<DeletionResidual> > deletionResiduals(const Problem& pro
                                                    problem.images()[o.image].points.rowsOf(o.row));
         }
     };
-    const int MANY = 4096, count = (int)information.inner.size();      // at a time
-    for (int begin = 0; begin < count; begin += MANY)
+    const int count = (int)information.inner.size();
+    for (int begin = 0; begin < count; begin += PassingRows::AT_ONCE)
     {
-        const int end = std::min(begin + MANY, count);
+        const int end = std::min(begin + PassingRows::AT_ONCE, count);
         images.moveTo(begin, end);
         parallel_for_(Range(begin, end), [&](const Range& range)
         {

@@ -341,10 +341,9 @@ Information eliminatePoints(const Problem& problem, const FreeSpace& space)
     information.rounding = std::sqrt(ROUNDING);
     const int count = (int)problem.scene().clusters().size();
     information.inner.resize(count);
-    const int MANY = 4096;      // clusters at a time
-    for (int begin = 0; begin < count; begin += MANY)
+    for (int begin = 0; begin < count; begin += PassingRows::AT_ONCE)
     {
-        std::vector<EliminatedCluster> some(std::min(MANY, count - begin));
+        std::vector<EliminatedCluster> some(std::min<int>(PassingRows::AT_ONCE, count - begin));
         addImages(images, images.moveTo(begin, begin + (int)some.size()), equations, squares);
         parallel_for_(Range(0, (int)some.size()), [&](const Range& range)
         {

@@ -4,6 +4,7 @@
 
 #include "adjust/linearize.hpp"
 #include "math/dense.hpp"
+#include <numeric>
 
 namespace cv { namespace refract {
 
@@ -60,17 +61,28 @@ ImageRows::ImageRows(const Problem& problem, const FreeSpace& space, int i, cons
     }
 }
 
+//! @param rootWeights in place of the images' own; null: their own
+static void makeRows(const Problem& problem, const FreeSpace& space, const std::vector<int>& images,
+                     const std::vector<std::vector<double> >* rootWeights, std::vector<std::unique_ptr<ImageRows> >& rows)
+{
+    parallel_for_(Range(0, (int)images.size()), [&](const Range& range)
+    {
+        for (int k = range.start; k < range.end; k++)
+        {
+            const int i = images[k];
+            rows[i].reset(new ImageRows(problem, space, i, rootWeights ? (*rootWeights)[i] : problem.images()[i].rootWeights));
+        }
+    });
+}
+
 std::vector<ImageRows> linearize(const Problem& problem, const FreeSpace& space)
 {
-    const int count = (int)problem.images().size();
-    std::vector<std::unique_ptr<ImageRows> > rows(count);
-    parallel_for_(Range(0, count), [&](const Range& range)
-    {
-        for (int i = range.start; i < range.end; i++)
-            rows[i].reset(new ImageRows(problem, space, i, problem.images()[i].rootWeights));
-    });
+    std::vector<std::unique_ptr<ImageRows> > rows(problem.images().size());
+    std::vector<int> images(rows.size());
+    std::iota(images.begin(), images.end(), 0);
+    makeRows(problem, space, images, nullptr, rows);
     std::vector<ImageRows> all;
-    all.reserve(count);
+    all.reserve(rows.size());
     for (std::unique_ptr<ImageRows>& image : rows)
         all.push_back(std::move(*image));
     return all;
@@ -100,14 +112,7 @@ std::vector<int> PassingRows::moveTo(int begin, int end)
         else if (first_[i] < end && !rows_[i])
             added.push_back(i);
     }
-    parallel_for_(Range(0, (int)added.size()), [&](const Range& range)
-    {
-        for (int k = range.start; k < range.end; k++)
-        {
-            const int i = added[k];
-            rows_[i].reset(new ImageRows(problem_, space_, i, rootWeights_ ? (*rootWeights_)[i] : problem_.images()[i].rootWeights));
-        }
-    });
+    makeRows(problem_, space_, added, rootWeights_, rows_);
     return added;
 }
 

@@ -50,6 +50,7 @@ that it shows to the last. Where points are listed as images show them, these ar
 class PassingRows
 {
 public:
+    enum { AT_ONCE = 4096 };        //!< inner blocks
     //! @param rootWeights in place of the images' own; outlive it; null: their own
     PassingRows(const Problem& problem, const FreeSpace& space, const std::vector<std::vector<double> >* rootWeights = nullptr);
     //! To inner blocks begin ... end - 1; begin ascends. @return the images that are new; they ascend

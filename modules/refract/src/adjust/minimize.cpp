@@ -327,12 +327,13 @@ FitOutcome Minimization::run(const TermCriteria& criteria, double& damping, doub
     TrustRegion regions[] = { fresh[0], fresh[1] };
     regions[0].leastGain = problem_.hasScene() ? leastGain : 0;
     regions[0].radius = std::max(1/damping, radius);        // exact data end where no step gains anything, whatever the damping
-    int left = criteria.maxCount, idle = 0;
+    int idle = 0;
     bool isAgain = false;
-    for (int turn = 0; left > 0 && idle < IDLE && !(regions[0].isIdle && regions[1].isIdle); turn = isAgain ? turn : 1 - turn)
+    for (int turn = 0; iterations_ < criteria.maxCount && idle < IDLE && !(regions[0].isIdle && regions[1].isIdle);
+         turn = isAgain ? turn : 1 - turn)
     {
         TrustRegion& region = regions[turn];
-        region.iterations = std::min(left, ITERATIONS_BETWEEN);
+        region.iterations = std::min(criteria.maxCount - iterations_, ITERATIONS_BETWEEN);
         if (!solve(region))
             break;
         damping = 1/regions[0].radius;
@@ -340,7 +341,6 @@ FitOutcome Minimization::run(const TermCriteria& criteria, double& damping, doub
         iterations_ += region.iterations;
         CV_LOG_INFO(NULL, "refract: " << (turn ? "dogleg" : "Levenberg-Marquardt") << " to " << problem_.squaredError() << ", "
                      << region.iterations << " iterations");
-        left -= region.iterations;
         if (region.outcome == ceres::CONVERGENCE && !isHeldAnew && (region.leastGain > 0 || isAtMinimum()))
             return FitOutcome();
         idle = region.iterations > 1 ? 0 : idle + 1;
@@ -359,8 +359,8 @@ FitOutcome Minimization::run(const TermCriteria& criteria, double& damping, doub
     const double ALL_BUT_TOUCHES = 1e-3;
     FitOutcome outcome = problem_.findPointAtWindow(ALL_BUT_TOUCHES);
     outcome.status = FitOutcome::MAX_ITERATIONS;
-    outcome.isStuck = left > 0;
-    outcome.count = criteria.maxCount - std::max(left, 0);
+    outcome.isStuck = iterations_ < criteria.maxCount;
+    outcome.count = std::min(iterations_, criteria.maxCount);
     return outcome;
 }
 

@@ -19,7 +19,7 @@ const int FEW_VIEWS = 8;
 const size_t LIKELY_TILTS = 4;
 
 //! A steeply tilted window in place of the given one; poses are found behind each.
-std::vector<RigStart> steepTilts(const Rig& given, const RigViews&)
+std::vector<RigStart> steepTilts(const Rig& given)
 {
     std::vector<RigStart> all;
     for (const WindowPlace& place : placesAround(given.cameras[0].window(), STEEP_TILTS.tilt, STEEP_TILTS.count, STEEP_TILTS.first))
@@ -106,14 +106,14 @@ std::vector<Minimum> windowMinima(const Camera& camera, const RigViews& views, i
         stages.insert(stages.begin(), first);
     }
     flags &= GLASS_FREE_DISTANCE;
-    const auto minimaFrom = [&](std::vector<RigStart> (*startsOf)(const Rig&, const RigViews&)) {
+    const auto minimaFrom = [&](const auto& startsOf) {
         std::vector<RigStart> starts;
         for (const Rig& rig : rigs)
-            for (const RigStart& start : startsOf(rig, views))
+            for (const RigStart& start : startsOf(rig))
                 starts.push_back(start);
         return multiStart(starts, stages, views, flags);
     };
-    std::vector<Minimum> minima = minimaFrom(likelyTilts);
+    std::vector<Minimum> minima = minimaFrom([&](const Rig& rig) { return likelyTilts(rig, views); });
     if (leavesMoreThanNoise(minima[0]))
     {
         const std::vector<Minimum> steep = minimaFrom(steepTilts);
