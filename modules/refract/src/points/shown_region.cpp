@@ -3,6 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "points/shown_region.hpp"
+#include "points/largest_rectangle.hpp"
 #include "points/plane.hpp"
 #include "opencv2/imgproc.hpp"
 
@@ -33,44 +34,6 @@ std::vector<Point2d> borderOf(const Rect2d& r, Size n)
         for (double x : { r.x, r.x + r.width })
             places.push_back(Point2d(x, r.y + i*r.height/lastRow));
     return places;
-}
-
-//! The largest rectangle within limits round a seed that has none of the points inside.
-Rect2d largestRound(const Point2d& seed, const Rect2d& limits, std::vector<Point2d> points)
-{
-    std::sort(points.begin(), points.end(), [](const Point2d& a, const Point2d& b) { return a.y < b.y; });
-    const auto below = std::lower_bound(points.begin(), points.end(), seed, [](const Point2d& a, const Point2d& b) { return a.y < b.y; });
-    const Point2d end = limits.br();
-    Rect2d best;
-    const auto consider = [&](double left, double top, double right, double bottom)
-    {
-        if ((right - left)*(bottom - top) > best.area())
-            best = Rect2d(left, top, right - left, bottom - top);
-    };
-    // Down from each top, the sides come in by the points that are passed.
-    double leftAbove = limits.x, rightAbove = end.x;
-    const auto narrow = [&](const Point2d& p, double& left, double& right)
-    {
-        if (p.x <= seed.x)
-            left = std::max(left, p.x);
-        else
-            right = std::min(right, p.x);
-    };
-    for (auto top = below;;)
-    {
-        double left = leftAbove, right = rightAbove;
-        const double y = top == points.begin() ? limits.y : std::max(limits.y, (top - 1)->y);
-        for (auto p = below; p != points.end() && p->y < end.y; ++p)
-        {
-            consider(left, y, right, p->y);
-            narrow(*p, left, right);
-        }
-        consider(left, y, right, end.y);
-        if (top == points.begin() || (top - 1)->y <= limits.y)
-            return best;
-        --top;
-        narrow(*top, leftAbove, rightAbove);
-    }
 }
 
 } // namespace
@@ -284,7 +247,7 @@ bool ShownRegion::findInner(Size size, Rect2d& inner) const
     inner = limits;
     if (isAllShown(limits, size))
         return !isUnbounded(limits);
-    const Rect2d largest = largestRound(seed, limits, endsTowards(seed, borderOf(limits, Size(WAYS, WAYS))));
+    const Rect2d largest = largestRectangle(seed, limits, endsTowards(seed, borderOf(limits, Size(WAYS, WAYS))));
     if (isUnbounded(largest))
         return false;
     // Between two ends the region may end a little before.
