@@ -15,9 +15,8 @@ TEST_CASE("Points whose raw pixels miss each other's epipolar curve are taken aw
     const RectifiedRig rig(scene.rig, cv::Vec2d(430, 1250));
     const double z = 700, c = rig.centre()[2];
     const double disparity = rig.shift() + (rig.depthOf(rig.shift() + 1) - c)/(z - c);
-    double seconds = 0;
     const std::vector<double> plane = {z};
-    const RectifiedImages rectified = rectify(rig, scene.left, scene.right, plane, plane, 1, seconds);
+    const RectifiedImages rectified = rectify(rig, scene.left, scene.right, plane, plane, 1);
     const auto& cameras = scene.rig.cameras;
     const int x = rig.size().width/2, y = rig.size().height/2, whole = cvRound(disparity);
     const Mat disparities(rig.size(), CV_32F, cv::Scalar(whole));

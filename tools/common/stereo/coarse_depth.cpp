@@ -34,8 +34,7 @@ Mat unlikeness(const Mat& first, const Mat& second, const Mat& disparity)
 }
 
 //! Disparities of images of half the size; where more than one slab has an answer, that which looks most alike.
-Mat coarseDisparity(const RectifiedRig& rig, const Mat& image1, const Mat& image2, const MatcherOptions& options,
-                    double& mapSeconds, double& matchSeconds)
+Mat coarseDisparity(const RectifiedRig& rig, const Mat& image1, const Mat& image2, const MatcherOptions& options)
 {
     const double scale = 0.5;
     const Slabs slabs(rig, scale);
@@ -43,9 +42,9 @@ Mat coarseDisparity(const RectifiedRig& rig, const Mat& image1, const Mat& image
     for (int k = 0; k < slabs.count(); k++)
     {
         const Mat plane(1, 1, CV_64F, cv::Scalar(slabs.depth(k)));
-        const RectifiedImages pair = rectify(rig, image1, image2, plane, plane, scale, mapSeconds);
+        const RectifiedImages pair = rectify(rig, image1, image2, plane, plane, scale);
         const Mat first = forMatcher(rig, pair.image[0]), second = forMatcher(rig, pair.image[1]);
-        const Mat found = match(first, second, slabs.from(k), slabs.disparities(k), options, matchSeconds);
+        const Mat found = match(first, second, slabs.from(k), slabs.disparities(k), options);
         if (slabs.count() == 1)
             return fromMatcher(rig, found);
         const Mat unlike = unlikeness(first, second, found);
@@ -64,14 +63,12 @@ Mat coarseDisparity(const RectifiedRig& rig, const Mat& image1, const Mat& image
 } // namespace
 
 void findCoarseDepth(const RectifiedRig& rig, const Mat& image1, const Mat& image2, const MatcherOptions& options, Mat& depth1,
-                     Mat& depth2, double& mapSeconds, double& matchSeconds)
+                     Mat& depth2)
 {
-    const Mat coarse = coarseDisparity(rig, image1, image2, options, mapSeconds, matchSeconds);
-    const int64 start = cv::getTickCount();
+    const Mat coarse = coarseDisparity(rig, image1, image2, options);
     const int FEW = 64;
     if (cv::countNonZero(coarse == coarse) > FEW)
         cv::refract::refractiveRectifiedDepth(coarse, rig.P1, rig.P2, rig.size(), depth1, depth2);
-    mapSeconds += secondsSince(start);
 }
 
 } // namespace tools

@@ -9,9 +9,9 @@
 namespace tools {
 
 /** The first pass: depths of both rectified images, CV_32F of the rig's size, from images of half the size. They stay as they
-were if hardly anything was matched. The seconds that it took are added. */
+were if hardly anything was matched. */
 void findCoarseDepth(const RectifiedRig& rig, const cv::Mat& image1, const cv::Mat& image2, const MatcherOptions& options,
-                     cv::Mat& depth1, cv::Mat& depth2, double& mapSeconds, double& matchSeconds);
+                     cv::Mat& depth1, cv::Mat& depth2);
 
 } // namespace tools
 

@@ -7,8 +7,6 @@
 #include "stereo/rectified_match.hpp"
 #include "stereo/refine_disparity.hpp"
 
-#include <algorithm>
-
 namespace tools {
 
 using cv::Mat;
@@ -17,17 +15,14 @@ namespace {
 
 void refine(const RectifiedRig& rig, DenseStereo& result, const Mat& first, const Mat& second)
 {
-    const int64 start = cv::getTickCount();
     const RefinedDisparity refined = refineDisparity(first, second, result.disparity);
     result.disparity = fromMatcher(rig, refined.disparity);
     result.disparitySigmas = fromMatcher(rig, refined.sigma);
     result.rowOffset = fromMatcher(rig, refined.rowOffset);
-    result.refineSeconds += secondsSince(start);
 }
 
 void findPoints(const RectifiedRig& rig, const RectifiedImages& rectified, DenseStereo& result)
 {
-    const int64 start = cv::getTickCount();
     const Calibration& c = rig.calibration();
     Mat points;
     cv::refract::refractiveReprojectImageTo3D(result.disparity, points, c.cameras[0].camera, c.cameras[1].camera, c.extrinsics[1].R,
@@ -35,30 +30,21 @@ void findPoints(const RectifiedRig& rig, const RectifiedImages& rectified, Dense
                                               rig.R2, rig.P1, rig.P2, result.depth1, result.depth2);
     cv::transform(points, result.points, rig.R1.t());
     removeInconsistentPoints(rig, rectified, result.disparity, result.points);
-    result.mapSeconds += secondsSince(start);
 }
 
 } // namespace
-
-int DenseStereo::matched() const
-{
-    int count = 0;
-    for (const cv::Vec3f& X : cv::Mat_<cv::Vec3f>(points))
-        count += X[2] == X[2];
-    return count;
-}
 
 DenseStereo matchPair(const RectifiedRig& rig, const Mat& image1, const Mat& image2, const MatcherOptions& options)
 {
     DenseStereo result;
     result.depth1 = result.depth2 = Mat(1, 1, CV_64F, cv::Scalar(rig.planeDepth()));
     if (options.passes > 1)
-        findCoarseDepth(rig, image1, image2, options, result.depth1, result.depth2, result.mapSeconds, result.matchSeconds[0]);
-    const RectifiedImages rectified = rectify(rig, image1, image2, result.depth1, result.depth2, 1, result.mapSeconds);
+        findCoarseDepth(rig, image1, image2, options, result.depth1, result.depth2);
+    const RectifiedImages rectified = rectify(rig, image1, image2, result.depth1, result.depth2, 1);
     result.rectified1 = rectified.image[0];
     result.rectified2 = rectified.image[1];
     const Mat first = forMatcher(rig, result.rectified1), second = forMatcher(rig, result.rectified2);
-    result.disparity = match(first, second, rig.minDisparity(), rig.disparities(), options, result.matchSeconds[1]);
+    result.disparity = match(first, second, rig.minDisparity(), rig.disparities(), options);
     refine(rig, result, first, second);
     findPoints(rig, rectified, result);
     return result;

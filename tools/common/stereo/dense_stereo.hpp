@@ -26,10 +26,6 @@ struct DenseStereo
     cv::Mat sigma;                      //!< CV_32FC3, one standard deviation of each of points' coordinates (pointSigma); NaN: unknown
     cv::Mat disparitySigmas;            //!< CV_32F, one standard deviation of disparity, px; NaN: none, or too few matches tell
     cv::Mat rowOffset;                  //!< CV_32F, px, by how much each match misses its row (refineDisparity)
-    double matchSeconds[2] = {0, 0};    //!< of the matcher, each pass
-    double mapSeconds = 0;              //!< of maps, coarse depth and points: what windows cost
-    double refineSeconds = 0;           //!< of disparity's fractions and sigmas
-    int matched() const;                //!< pixels of rectified1 with a point
 };
 
 //! Both images of one moment, of the rig's size, 8-bit, grey or colour.

@@ -11,8 +11,6 @@ namespace tools {
 
 using cv::Mat;
 
-double secondsSince(int64 ticks) { return (double)(cv::getTickCount() - ticks)/cv::getTickFrequency(); }
-
 //! P of the same new image, scale times as large.
 static Mat scaled(const Mat& P, double scale)
 {
@@ -21,13 +19,12 @@ static Mat scaled(const Mat& P, double scale)
 }
 
 RectifiedImages rectify(const RectifiedRig& rig, const Mat& image1, const Mat& image2, cv::InputArray depth1,
-                        cv::InputArray depth2, double scale, double& seconds)
+                        cv::InputArray depth2, double scale)
 {
     RectifiedImages result;
     const cv::Size size(cvFloor(rig.size().width*scale), cvFloor(rig.size().height*scale));
     for (int c = 0; c < 2; c++)
     {
-        const int64 start = cv::getTickCount();
         const Mat T = c ? Mat(rig.calibration().extrinsics[c].T) : Mat(), P = scaled(c ? rig.P2 : rig.P1, scale);
         const auto mapOf = [&](const cv::Ptr<cv::refract::RefractiveCamera>& camera) {
             Mat map;
@@ -39,7 +36,6 @@ RectifiedImages rectify(const RectifiedRig& rig, const Mat& image1, const Mat& i
         std::vector<Mat> maps;
         for (const auto& camera : rig.colours(c))
             maps.push_back(mapOf(camera));
-        seconds += secondsSince(start);
         result.image[c] = remapChannels(c ? image2 : image1, maps.empty() ? std::vector<Mat>{result.map[c]} : maps,
                                         cv::INTER_LINEAR);
     }
@@ -54,7 +50,7 @@ Mat forMatcher(const RectifiedRig& rig, const Mat& image)
     return fromMatcher(rig, greyOf(image, rig.correctsColours() ? BRIGHTNESS : rig.calibration().channel));
 }
 
-Mat match(const Mat& first, const Mat& second, int minDisparity, int disparities, const MatcherOptions& options, double& seconds)
+Mat match(const Mat& first, const Mat& second, int minDisparity, int disparities, const MatcherOptions& options)
 {
     // The matcher answers no column whose farthest partner would be outside: with a margin it answers all.
     const int left = std::max(minDisparity + disparities, 0), right = std::max(-minDisparity, 0);
@@ -65,9 +61,7 @@ Mat match(const Mat& first, const Mat& second, int minDisparity, int disparities
     const cv::Ptr<cv::StereoSGBM> matcher = cv::StereoSGBM::create(
         minDisparity, disparities, options.block, 8*area, 32*area, 1, 31, 10, 100, 2,
         options.fullPaths ? cv::StereoSGBM::MODE_HH : cv::StereoSGBM::MODE_SGBM_3WAY);
-    const int64 start = cv::getTickCount();
     matcher->compute(wide1, wide2, fixed);
-    seconds += secondsSince(start);
     fixed = fixed(cv::Rect(left, 0, first.cols, first.rows));
     fixed.convertTo(result, CV_32F, 1./cv::StereoMatcher::DISP_SCALE);
     result.setTo(NAN, fixed < minDisparity*cv::StereoMatcher::DISP_SCALE);

@@ -15,10 +15,9 @@ struct RectifiedImages
 };
 
 /** @param depth1, depth2 as initRefractiveStereoRectifyMap's
-@param scale of the new images, beside the rig's
-@param seconds that the maps took are added */
+@param scale of the new images, beside the rig's */
 RectifiedImages rectify(const RectifiedRig& rig, const cv::Mat& image1, const cv::Mat& image2, cv::InputArray depth1,
-                        cv::InputArray depth2, double scale, double& seconds);
+                        cv::InputArray depth2, double scale);
 
 //! Grey, and turned so that partners lie along the rows: those of a vertical pair lie along the columns.
 cv::Mat forMatcher(const RectifiedRig& rig, const cv::Mat& image);
@@ -26,10 +25,7 @@ cv::Mat forMatcher(const RectifiedRig& rig, const cv::Mat& image);
 cv::Mat fromMatcher(const RectifiedRig& rig, const cv::Mat& image);
 
 //! Disparity along the rows, in pixels of the given grey images; NaN: none.
-cv::Mat match(const cv::Mat& first, const cv::Mat& second, int minDisparity, int disparities, const MatcherOptions& options,
-              double& seconds);
-
-double secondsSince(int64 ticks);
+cv::Mat match(const cv::Mat& first, const cv::Mat& second, int minDisparity, int disparities, const MatcherOptions& options);
 
 } // namespace tools
 

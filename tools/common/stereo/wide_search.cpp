@@ -101,14 +101,13 @@ Mat disparityOf(const RectifiedRig& rig, const Mat& image1, const Mat& image2, d
 {
     const Slabs slabs(rig, scale);
     const float ALIKE = slabs.count() > 1 ? 0.8f : 0.f;     // of many answers the best is alike by chance
-    double seconds = 0;
     Mat result, best;
     for (int k = 0; k < slabs.count(); k++)
     {
         const Mat plane(1, 1, CV_64F, cv::Scalar(slabs.depth(k)));
-        const RectifiedImages pair = rectify(rig, image1, image2, plane, plane, scale, seconds);
+        const RectifiedImages pair = rectify(rig, image1, image2, plane, plane, scale);
         const Mat first = forMatcher(rig, pair.image[0]), second = forMatcher(rig, pair.image[1]);
-        Mat found = match(first, second, slabs.from(k), slabs.disparities(k), MatcherOptions(), seconds);
+        Mat found = match(first, second, slabs.from(k), slabs.disparities(k), MatcherOptions());
         removeBeyond(rig, pair, image1.size(), found);
         const MatchSupport support = supportOf(first, second, found, false);
         if (result.empty())
