@@ -8,7 +8,7 @@
 #include "../assess/fitted_rig.hpp"
 #include "accept/acceptance.hpp"
 #include "calibrate/given_std.hpp"
-#include "diagnose/rig_vector.hpp"
+#include "measure/rig_vector.hpp"
 #include "normal_draw.hpp"
 #include "report/summary.hpp"
 #include <catch2/catch.hpp>

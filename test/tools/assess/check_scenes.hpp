@@ -5,6 +5,7 @@
 #ifndef REFRACT_TEST_TOOLS_CHECK_SCENES_HPP
 #define REFRACT_TEST_TOOLS_CHECK_SCENES_HPP
 
+#include "measure/rig_vector.hpp"
 #include "assess/check_problem.hpp"
 #include "assess/rig_check.hpp"
 #include "calibrate/parameter_columns.hpp"

@@ -8,7 +8,7 @@
 #include "calibrate/parameter_columns.hpp"
 #include "console/failure.hpp"
 #include "console/table.hpp"
-#include "diagnose/rig_vector.hpp"
+#include "measure/rig_vector.hpp"
 #include "math/dense.hpp"
 #include "paper_rig.hpp"
 

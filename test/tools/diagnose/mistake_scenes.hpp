@@ -9,7 +9,7 @@ of boards, without rendering; and mistakes that are made with such images. */
 #include "assess/calibrate_images.hpp"
 #include "calibrate/units.hpp"
 #include "diagnose/hypothesis_tests.hpp"
-#include "diagnose/rig_vector.hpp"
+#include "measure/rig_vector.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "console/failure.hpp"
 #include "paper_rig.hpp"

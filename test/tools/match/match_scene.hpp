@@ -4,6 +4,7 @@
 #ifndef REFRACT_TEST_MATCH_SCENE_HPP
 #define REFRACT_TEST_MATCH_SCENE_HPP
 
+#include "measure/rig_vector.hpp"
 #include "assess/check_input.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "match/scene_matches.hpp"

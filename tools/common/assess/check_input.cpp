@@ -33,16 +33,6 @@ std::vector<int> columnsIn(const RigModel& from, const RigModel& to)
     return columns;
 }
 
-VectorXd motionParameters(const RigidTransform& transform)
-{
-    const Vec3d r = rotationVector(transform.R);
-    VectorXd p(6);
-    p << r[0], r[1], r[2], transform.T[0], transform.T[1], transform.T[2];
-    return p;
-}
-
-RigidTransform motionOf(const double* p) { return transformOf(Vec3d(p), Vec3d(p + 3)); }
-
 } // namespace
 
 CheckInput checkInputOf(const Calibration& calibration, const std::string& filename, double pixelSigma)
@@ -74,7 +64,7 @@ CheckInput withWedges(const CheckInput& input)
         window.wedge.resize(window.thickness.size());
         camera->setWindow(window);
     }
-    const int count = (int)parametersOf(result.rig).size();
+    const int count = columnCount(result.rig) + (result.rig.targetCovariance.empty() ? 0 : TARGET_ERRORS);
     result.covariance = Mat(count, count, CV_64F, Scalar(0));       // not Mat::zeros: assigned, it would clear the numbers of the input
     const std::vector<int> columns = columnsIn(input.rig, result.rig);
     for (int i = 0; i < input.covariance.rows; i++)
@@ -93,41 +83,6 @@ CheckInput withTargetColumns(const CheckInput& input, const Mat& covariance)
         input.covariance.copyTo(result.covariance(Rect(0, 0, count, count)));
     result.rig.targetCovariance.copyTo(result.covariance(Rect(count, count, TARGET_ERRORS, TARGET_ERRORS)));
     return result;
-}
-
-VectorXd parametersOf(const RigModel& rig)
-{
-    const int count = columnCount(rig);
-    const bool hasTargetErrors = !rig.targetCovariance.empty();
-    VectorXd p(count + (hasTargetErrors ? TARGET_ERRORS : 0));
-    for (int c = 0; c < (int)rig.cameras.size(); c++)
-    {
-        const ParameterColumns at = columnsOf(rig, c);
-        p.segment(at.lens, at.lensCount) = toEigen(rig.cameras[c]->lensParameters());
-        putWindow(rig.cameras[c]->window(), at, p.data());
-        if (c > 0)
-            p.segment(extrinsicsColumn(rig, c), 6) = motionParameters(rig.extrinsics[c]);
-    }
-    if (hasTargetErrors)
-        p.tail(TARGET_ERRORS) << rig.targetScale, motionParameters(rig.targetMotion);
-    return p;
-}
-
-void setParameters(RigModel& rig, const VectorXd& p)
-{
-    for (int c = 0; c < (int)rig.cameras.size(); c++)
-    {
-        const ParameterColumns at = columnsOf(rig, c);
-        const VectorXd lens = p.segment(at.lens, at.lensCount);
-        rig.cameras[c]->setLensParameters(toMat(lens));
-        rig.cameras[c]->setWindow(windowOf(rig.cameras[c]->window(), at, p.data()));
-        if (c > 0)
-            rig.extrinsics[c] = motionOf(p.data() + extrinsicsColumn(rig, c));
-    }
-    if (rig.targetCovariance.empty())
-        return;
-    rig.targetScale = p[columnCount(rig)];
-    rig.targetMotion = motionOf(p.data() + columnCount(rig) + 1);
 }
 
 } // namespace tools

@@ -7,7 +7,7 @@
 #include "measure/eigen_matrix.hpp"
 #include "calibrate/rig_model.hpp"
 
-/* A calibration as a check of new images starts from it, and its parameters as one vector in the order of Fit::covariance. */
+/* A calibration as a check of new images starts from it. */
 namespace tools {
 
 struct CheckInput
@@ -27,12 +27,6 @@ CheckInput withWedges(const CheckInput& input);
 
 //! The same with columns for the scale and the motion of the targets. @param covariance of these; empty: they are exact
 CheckInput withTargetColumns(const CheckInput& input, const cv::Mat& covariance);
-
-//! Lenses, windows, R (as rotation vectors) and T, and the targets' errors if the rig has columns for them.
-VectorXd parametersOf(const RigModel& rig);
-
-//! The other way; normals get length 1.
-void setParameters(RigModel& rig, const VectorXd& parameters);
 
 } // namespace tools
 

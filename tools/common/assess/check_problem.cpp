@@ -4,6 +4,7 @@
 #include "assess/check_problem.hpp"
 #include "console/failure.hpp"
 #include "math/dense.hpp"
+#include "measure/rig_vector.hpp"
 #include <cmath>
 #include <limits>
 

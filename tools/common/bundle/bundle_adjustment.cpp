@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "bundle/bundle_adjustment.hpp"
+#include "measure/rig_vector.hpp"
 #include "calibrate/estimated_parameters.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "console/failure.hpp"
@@ -51,9 +52,9 @@ double squaredPrior(const BundleStart& start, const RigModel& rig)
 {
     if (start.covariance.empty())
         return 0.;
-    const Mat change = valuesOf(rig) - valuesOf(start.rig);
+    const VectorXd change = parametersOf(rig) - parametersOf(start.rig);
     std::vector<int> known;
-    for (int i = 0; i < change.rows; i++)
+    for (int i = 0; i < (int)change.size(); i++)
         if (start.covariance.at<double>(i, i) > 0)
             known.push_back(i);
     if (known.empty())
@@ -62,7 +63,7 @@ double squaredPrior(const BundleStart& start, const RigModel& rig)
     const Mat variances = correlation.diag().clone();
     for (int i = 0; i < scaled.rows; i++)
     {
-        scaled.at<double>(i) = change.at<double>(known[i])/std::sqrt(variances.at<double>(i));
+        scaled.at<double>(i) = change[known[i]]/std::sqrt(variances.at<double>(i));
         for (int j = 0; j < scaled.rows; j++)
             correlation.at<double>(i, j) /= std::sqrt(variances.at<double>(i)*variances.at<double>(j));
     }

@@ -3,6 +3,7 @@
 
 #include "bundle/bundle_findings.hpp"
 #include "bundle/start_covariance.hpp"
+#include "measure/rig_vector.hpp"
 #include "calibrate/estimated_parameters.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "calibrate/units.hpp"
@@ -121,7 +122,7 @@ std::string nameOf(const RigModel& rig, int column)
 void findContradictions(const BundleStart& start, const Fit& fit, BundleFindings& findings)
 {
     const double MANY = 5.;
-    const Mat_<double> values = valuesOf(fit.rig), known = valuesOf(start.rig);
+    const VectorXd values = parametersOf(fit.rig), known = parametersOf(start.rig);
     const int places = extrinsicsColumn(fit.rig, 1);
     ParameterColumns at;
     double worst = 0.;
@@ -131,7 +132,7 @@ void findContradictions(const BundleStart& start, const Fit& fit, BundleFindings
         const double before = start.covariance.at<double>(i, i), now = fit.covariance.at<double>(i, i);
         if (!(before > 0) || (i < places && followsOthers(windowOfColumn(fit.rig, i, at), at, i)))
             continue;
-        const double change = std::abs(values(i) - known(i));
+        const double change = std::abs(values[i] - known[i]);
         const double ratio = change/std::sqrt(std::max(before - now, 1e-2*before));
         if (ratio > worst)
         {

@@ -208,25 +208,6 @@ std::string unitOf(const Calibration& file, const std::string& path, const Bundl
 
 } // namespace
 
-cv::Mat_<double> valuesOf(const RigModel& rig)
-{
-    cv::Mat_<double> values(columnCount(rig), 1, 0.);
-    for (int c = 0; c < (int)rig.cameras.size(); c++)
-    {
-        const ParameterColumns at = columnsOf(rig, c);
-        rig.cameras[c]->lensParameters().copyTo(values(cv::Rect(0, at.lens, 1, at.lensCount)));
-        putWindow(rig.cameras[c]->window(), at, &values(0));
-    }
-    for (int c = 1; c < (int)rig.cameras.size(); c++)
-    {
-        const cv::Vec3d rvec = rotationVector(rig.extrinsics[c].R), T = rig.extrinsics[c].T;
-        const int at = extrinsicsColumn(rig, c);
-        std::copy_n(rvec.val, 3, &values(at));
-        std::copy_n(T.val, 3, &values(at + 3));
-    }
-    return values;
-}
-
 std::vector<std::string> freeNames()
 {
     std::vector<std::string> names = {NONE};

@@ -30,9 +30,6 @@ struct BundleStart
     std::string placeOption = {};       //!< what said where windows are; empty: the file
 };
 
-//! All parameters of a rig, in the order of its covariance.
-cv::Mat_<double> valuesOf(const RigModel& rig);
-
 //! What --free takes.
 std::vector<std::string> freeNames();
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "diagnose/causes.hpp"
-#include "diagnose/rig_vector.hpp"
+#include "measure/rig_vector.hpp"
 #include "diagnose/value_causes.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "console/table.hpp"

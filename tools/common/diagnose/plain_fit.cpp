@@ -5,7 +5,7 @@
 #include "diagnose/unfitted.hpp"
 #include "calibrate/image_fit.hpp"
 #include "calibrate/parameter_columns.hpp"
-#include "diagnose/rig_vector.hpp"
+#include "measure/rig_vector.hpp"
 #include "measure/image_noise.hpp"
 #include <algorithm>
 #include <cmath>

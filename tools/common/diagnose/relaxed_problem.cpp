@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "diagnose/relaxed_problem.hpp"
-#include "diagnose/rig_vector.hpp"
+#include "measure/rig_vector.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "calibrate/window_face.hpp"
 #include "math/dense.hpp"

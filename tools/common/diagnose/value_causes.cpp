@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "diagnose/value_causes.hpp"
-#include "diagnose/rig_vector.hpp"
+#include "measure/rig_vector.hpp"
 #include "diagnose/value_mistakes.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "calibrate/units.hpp"

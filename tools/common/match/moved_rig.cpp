@@ -5,6 +5,7 @@
 #include "assess/change.hpp"
 #include "match/depth_range.hpp"
 #include "math/dense.hpp"
+#include "measure/rig_vector.hpp"
 #include "measure/view_derivatives.hpp"
 
 #include <algorithm>

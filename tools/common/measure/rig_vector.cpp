@@ -1,7 +1,7 @@
 // This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
 // SPDX-License-Identifier: Apache-2.0
 
-#include "diagnose/rig_vector.hpp"
+#include "measure/rig_vector.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "calibrate/window_face.hpp"
 #include <algorithm>
@@ -37,6 +37,19 @@ RigidTransform placeOfCamera(const RigModel& rig, int camera, const VectorXd& nu
     return camera == 0 ? RigidTransform() : transformOf(get(numbers, at), get(numbers, at + 3));
 }
 
+void setLens(RigModel& rig, int camera, const VectorXd& numbers)
+{
+    const ParameterColumns at = columnsOf(rig, camera);
+    rig.cameras[camera]->setLensParameters(toMat(numbers.segment(at.lens, at.lensCount)));
+}
+
+void setTargets(RigModel& rig, const VectorXd& numbers)
+{
+    const int at = columnCount(rig);
+    rig.targetScale = numbers[at];
+    rig.targetMotion = transformOf(get(numbers, at + 1), get(numbers, at + 4));
+}
+
 //! Numbers of a shared window for a camera that does not own it.
 VectorXd windowNumbersOf(const RigModel& rig, int owner, int camera, const VectorXd& numbers)
 {
@@ -58,9 +71,7 @@ VectorXd toVector(const RigModel& rig)
     for (int c = 0; c < (int)rig.cameras.size(); c++)
     {
         const ParameterColumns at = columnsOf(rig, c);
-        const Mat lens = rig.cameras[c]->lensParameters();
-        for (int i = 0; i < at.lensCount; i++)
-            numbers[at.lens + i] = lens.at<double>(i);
+        numbers.segment(at.lens, at.lensCount) = toEigen(rig.cameras[c]->lensParameters());
         putWindow(rig.cameras[c]->window(), at, numbers.data());
         if (c == 0)
             continue;
@@ -74,6 +85,25 @@ VectorXd toVector(const RigModel& rig)
     return numbers;
 }
 
+VectorXd parametersOf(const RigModel& rig)
+{
+    const VectorXd numbers = toVector(rig);
+    return rig.targetCovariance.empty() ? VectorXd(numbers.head(columnCount(rig))) : numbers;
+}
+
+void setParameters(RigModel& rig, const VectorXd& p)
+{
+    for (int c = 0; c < (int)rig.cameras.size(); c++)
+    {
+        setLens(rig, c, p);
+        rig.cameras[c]->setWindow(windowOf(rig.cameras[c]->window(), columnsOf(rig, c), p.data()));
+        if (c > 0)
+            rig.extrinsics[c] = placeOfCamera(rig, c, p);
+    }
+    if (!rig.targetCovariance.empty())
+        setTargets(rig, p);
+}
+
 RigModel withVector(const RigModel& rig, const VectorXd& numbers)
 {
     RigModel result = rig.clone();
@@ -82,10 +112,7 @@ RigModel withVector(const RigModel& rig, const VectorXd& numbers)
     for (int c = 0; c < (int)rig.cameras.size(); c++)
     {
         const ParameterColumns at = columnsOf(rig, c);
-        Mat lens(at.lensCount, 1, CV_64F);
-        for (int i = 0; i < at.lensCount; i++)
-            lens.at<double>(i) = numbers[at.lens + i];
-        result.cameras[c]->setLensParameters(lens);
+        setLens(result, c, numbers);
         const int owner = ownerOf(rig, c);
         GlassWindow window = windowOf(rig.cameras[c]->window(), at, numbers.data());
         if (owner < c)
@@ -93,9 +120,7 @@ RigModel withVector(const RigModel& rig, const VectorXd& numbers)
         window.distance = std::max(0., window.distance);        // between equal media any will do, and 0 is given
         result.cameras[c]->setWindow(window);
     }
-    const int targets = columnCount(rig);
-    result.targetScale = numbers[targets];
-    result.targetMotion = transformOf(get(numbers, targets + 1), get(numbers, targets + 4));
+    setTargets(result, numbers);
     return result;
 }
 

@@ -7,14 +7,21 @@
 #include "calibrate/rig_model.hpp"
 #include "measure/eigen_matrix.hpp"
 
-/* All numbers of a rig in one vector, in the order of Fit::withTargets with the errors of the targets at its end. */
+/* All numbers of a rig in one vector: lenses, windows, R (as rotation vectors) and T, as Fit::covariance. */
 namespace tools {
 
 int rigVectorSize(const RigModel& rig);
 
+//! With the errors of the targets at its end, as Fit::withTargets.
 VectorXd toVector(const RigModel& rig);
 
-//! The rig with these numbers; cameras that look through another one's window get it from there.
+//! The same with these errors only if the rig has columns for them.
+VectorXd parametersOf(const RigModel& rig);
+
+//! The other way, whether or not windows are shared; normals get length 1.
+void setParameters(RigModel& rig, const VectorXd& parameters);
+
+//! The rig with all these numbers; cameras that look through another one's window get it from there.
 RigModel withVector(const RigModel& rig, const VectorXd& numbers);
 
 //! How withVector changes numbers that depend on others: the normal's length, a shared window. Derivatives, at the rig.
