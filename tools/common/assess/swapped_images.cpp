@@ -3,6 +3,7 @@
 
 #include "assess/swapped_images.hpp"
 #include "console/table.hpp"
+#include "diagnose/image_mixups.hpp"
 #include <algorithm>
 #include <functional>
 
@@ -22,62 +23,22 @@ const char* const STATES[] = {"direct images", "images through the window", "ima
 struct Transform
 {
     const char* what;
-    bool flipU, flipV, swap;
-    struct Renumbering { bool flipX, flipY, swap; };
-    std::vector<Renumbering> renumberings;
+    ImageTurn turn;
+    std::vector<ImageTurn> renumberings;
 };
 
 const Transform TRANSFORMS[] = {
-    {"turned by 180 degrees", true, true, false, {{false, false, false}, {true, true, false}}},
-    {"mirrored (left and right exchanged)", true, false, false, {{false, false, false}, {true, false, false}, {false, true, false}}},
-    {"mirrored (top and bottom exchanged)", false, true, false, {{false, false, false}, {true, false, false}, {false, true, false}}},
-    {"turned by 90 degrees to the left", false, true, true, {{false, false, false}, {false, true, true}, {true, false, true}}},
-    {"turned by 90 degrees to the right", true, false, true, {{false, false, false}, {false, true, true}, {true, false, true}}}};
+    {"turned by 180 degrees", {true, true, false}, {{false, false, false}, {true, true, false}}},
+    {"mirrored (left and right exchanged)", {true, false, false}, {{false, false, false}, {true, false, false}, {false, true, false}}},
+    {"mirrored (top and bottom exchanged)", {false, true, false}, {{false, false, false}, {true, false, false}, {false, true, false}}},
+    {"turned by 90 degrees to the left", {false, true, true}, {{false, false, false}, {false, true, true}, {true, false, true}}},
+    {"turned by 90 degrees to the right", {true, false, true}, {{false, false, false}, {false, true, true}, {true, false, true}}}};
 
-//! Where each point is in a board that is turned or mirrored about its middle; empty: it is not symmetrical.
-std::vector<int> renumbered(const std::vector<Point3d>& object, const Transform::Renumbering& by)
-{
-    std::vector<int> numbers(object.size());
-    if (object.empty())
-        return numbers;
-    Vec3d low = object[0], high = object[0];
-    for (const Point3d& X : object)
-        for (int axis = 0; axis < 3; axis++)
-        {
-            low[axis] = std::min(low[axis], Vec3d(X)[axis]);
-            high[axis] = std::max(high[axis], Vec3d(X)[axis]);
-        }
-    const double near = 1e-6*norm(high - low);
-    for (size_t i = 0; i < object.size(); i++)
-    {
-        Vec3d X = Vec3d(object[i]) - 0.5*(low + high);
-        if (by.swap)
-            std::swap(X[0], X[1]);
-        X[0] *= by.flipX ? -1. : 1.;
-        X[1] *= by.flipY ? -1. : 1.;
-        const Vec3d there = X + 0.5*(low + high);
-        const auto found = std::find_if(object.begin(), object.end(), [&](const Point3d& Y) { return norm(Vec3d(Y) - there) <= near; });
-        if (found == object.end())
-            return {};
-        numbers[i] = int(found - object.begin());
-    }
-    return numbers;
-}
-
-Pixels undone(const Pixels& pixels, const Transform& transform, const std::vector<int>& numbers, Size size)
+Pixels undone(const Pixels& pixels, const ImageTurn& turn, const std::vector<int>& numbers, Size size)
 {
     Pixels result(pixels.size());
     for (size_t i = 0; i < pixels.size(); i++)
-    {
-        Point2d p = pixels[i];
-        if (transform.swap)
-            std::swap(p.x, p.y);
-        if (transform.flipU)
-            p.x = size.width - 1. - p.x;
-        if (transform.flipV)
-            p.y = size.height - 1. - p.y;
-        result[numbers[i]] = p;
-    }
+        result[numbers[i]] = undone(turn, pixels[i], size);
     return result;
 }
 
@@ -110,7 +71,7 @@ private:
                 if (!hasAny(c, state) || (state != BOTH && !hasBoth))
                     continue;
                 for (const Transform& transform : TRANSFORMS)
-                    for (const Transform::Renumbering& renumbering : transform.renumberings)
+                    for (const ImageTurn& renumbering : transform.renumberings)
                         addTransform(c, state, transform, renumbering);
             }
     }
@@ -123,7 +84,7 @@ private:
         return false;
     }
 
-    void addTransform(int c, State state, const Transform& transform, const Transform::Renumbering& renumbering)
+    void addTransform(int c, State state, const Transform& transform, const ImageTurn& renumbering)
     {
         std::vector<View> views = views_;
         for (View& view : views)
@@ -136,12 +97,12 @@ private:
                 const Size size = rig_.cameras[k]->imageSize();
                 if (c >= 0 && c != k)
                     continue;
-                if (size.empty() || (transform.swap && size.width != size.height))
+                if (size.empty() || (transform.turn.swap && size.width != size.height))
                     return;
                 if (state != GLASS && view.hasDirect(k))
-                    view.direct[k] = undone(view.direct[k], transform, numbers, size);
+                    view.direct[k] = undone(view.direct[k], transform.turn, numbers, size);
                 if (state != DIRECT && view.hasGlass(k))
-                    view.glass[k] = undone(view.glass[k], transform, numbers, size);
+                    view.glass[k] = undone(view.glass[k], transform.turn, numbers, size);
             }
         }
         all.push_back({STATES[state] + ofCamera(c) + " " + transform.what, c, views});

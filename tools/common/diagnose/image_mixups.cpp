@@ -19,39 +19,7 @@ const double NOT_WORSE = 1.5;           // any of them
 const double AS_GOOD = 1.3;             // as the least that any leaves
 
 enum Change { HALF_TURN, MIRROR, QUARTER_TURN, BACK_TURN, CHANGES };
-
-Point2d undone(Change change, const Point2d& p, Size size)
-{
-    switch (change)
-    {
-    case HALF_TURN: return Point2d(size.width - 1. - p.x, size.height - 1. - p.y);
-    case MIRROR: return Point2d(size.width - 1. - p.x, p.y);
-    case QUARTER_TURN: return Point2d(p.y, size.width - 1. - p.x);
-    default: return Point2d(size.height - 1. - p.y, p.x);
-    }
-}
-
-//! Which point of a board lies where another one would be if its rows or columns were counted from the other side; empty: none.
-std::vector<int> countedFromOtherSide(const std::vector<Point3d>& board, bool x, bool y)
-{
-    Point2d low(1e300, 1e300), high(-1e300, -1e300);
-    for (const Point3d& X : board)
-    {
-        low = Point2d(std::min(low.x, X.x), std::min(low.y, X.y));
-        high = Point2d(std::max(high.x, X.x), std::max(high.y, X.y));
-    }
-    const double tolerance = 1e-6*norm(high - low);
-    std::vector<int> order;
-    for (const Point3d& X : board)
-    {
-        const Point3d there(x ? low.x + high.x - X.x : X.x, y ? low.y + high.y - X.y : X.y, X.z);
-        const auto at = std::find_if(board.begin(), board.end(), [&](const Point3d& other) { return norm(other - there) <= tolerance; });
-        if (at == board.end())
-            return {};
-        order.push_back((int)(at - board.begin()));
-    }
-    return order;
-}
+const ImageTurn TURNS[] = {{true, true, false}, {true, false, false}, {false, true, true}, {true, false, true}};     // of Change
 
 //! Of the directions along the rows and the columns of two images of a board.
 double agreement(const View& view, const std::vector<Point2d>& a, const std::vector<Point2d>& b)
@@ -73,7 +41,7 @@ void nameAs(const View& view, const std::vector<Point2d>& reference, std::vector
     std::vector<Point2d> named = pixels;
     for (int flips = 0; flips < 4; flips++)
     {
-        const std::vector<int> order = countedFromOtherSide(view.objectPoints, flips & 1, flips & 2);
+        const std::vector<int> order = renumbered(view.objectPoints, {(flips & 1) != 0, (flips & 2) != 0, false});
         if (order.empty())
             continue;
         std::vector<Point2d> candidate;
@@ -113,14 +81,14 @@ RigData changedBack(const RigData& given, Change change, int camera, bool direct
             if (pixels->empty() || (!directToo && pixels == &view.direct[camera]))
                 continue;
             for (Point2d& p : *pixels)
-                p = undone(change, p, size);
+                p = undone(TURNS[change], p, size);
             if (view.neighbours.empty())        // points that have names of their own
                 continue;
             if (reference)
                 nameAs(view, *reference, *pixels);
             else if (change == MIRROR)
             {
-                const std::vector<int> order = countedFromOtherSide(view.objectPoints, true, false);
+                const std::vector<int> order = renumbered(view.objectPoints, {true, false, false});
                 const std::vector<Point2d> before = *pixels;
                 for (size_t i = 0; i < order.size(); i++)
                     (*pixels)[i] = before[order[i]];
@@ -211,6 +179,41 @@ std::string sentenceOf(Change change, const RigData& data, int camera, bool dire
 }
 
 } // namespace
+
+Point2d undone(const ImageTurn& turn, Point2d p, Size size)
+{
+    if (turn.swap)
+        std::swap(p.x, p.y);
+    return Point2d(turn.flipX ? size.width - 1. - p.x : p.x, turn.flipY ? size.height - 1. - p.y : p.y);
+}
+
+std::vector<int> renumbered(const std::vector<Point3d>& board, const ImageTurn& by)
+{
+    if (board.empty())
+        return {};
+    Vec3d low = board[0], high = board[0];
+    for (const Point3d& X : board)
+        for (int axis = 0; axis < 3; axis++)
+        {
+            low[axis] = std::min(low[axis], Vec3d(X)[axis]);
+            high[axis] = std::max(high[axis], Vec3d(X)[axis]);
+        }
+    const double near = 1e-6*norm(high - low);
+    const Vec3d middle = 0.5*(low + high);
+    std::vector<int> numbers;
+    for (const Point3d& X : board)
+    {
+        Vec3d there = Vec3d(X) - middle;
+        if (by.swap)
+            std::swap(there[0], there[1]);
+        there = Vec3d(by.flipX ? -there[0] : there[0], by.flipY ? -there[1] : there[1], there[2]) + middle;
+        const auto found = std::find_if(board.begin(), board.end(), [&](const Point3d& Y) { return norm(Vec3d(Y) - there) <= near; });
+        if (found == board.end())
+            return {};
+        numbers.push_back(int(found - board.begin()));
+    }
+    return numbers;
+}
 
 MixUps findMixUps(const CalibrationInput& input)
 {
