@@ -143,10 +143,8 @@ void refuseOverwriting(const Options& options, const std::string& settings, cons
 {
     std::vector<std::string> inputs = {options.calibration, options.truth, settings};
     for (const Frames* frames : {&first, &second})
-        if (frames->isVideo())
-            inputs.push_back(frames->source());
-        else
-            inputs.insert(inputs.end(), frames->files().begin(), frames->files().end());
+        for (const std::string& path : frames->paths())
+            inputs.push_back(path);
     std::vector<Output> outputs;
     const bool inFolder = !options.folder.empty();
     for (const PairFiles& f : files)

@@ -112,10 +112,8 @@ void refuseOverwriting(const Options& options, const std::string& settings, cons
     std::vector<Output> outputs;
     std::vector<std::string> inputs = {options.calibration, settings};
     for (const Frames& frames : sources)
-        if (frames.isVideo())
-            inputs.push_back(frames.source());
-        else
-            inputs.insert(inputs.end(), frames.files().begin(), frames.files().end());
+        for (const std::string& path : frames.paths())
+            inputs.push_back(path);
     for (const Job& job : jobs)
         outputs.push_back({"--out-dir", job.output, OUTPUT_IN_FOLDER});
     checkOutputs(outputs, inputs);

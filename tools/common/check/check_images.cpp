@@ -116,10 +116,8 @@ CheckImages readScene(const CheckOptions& o, const Calibration& calibration, con
     std::vector<Frames> cameras = framesOf(sources, calibration, o.calibration, o.images.viewPattern);
     CheckImages result;
     for (const Frames& frames : cameras)
-        if (frames.isVideo())
-            result.files.push_back(frames.source());
-        else
-            result.files.insert(result.files.end(), frames.files().begin(), frames.files().end());
+        for (const std::string& path : frames.paths())
+            result.files.push_back(path);
     SceneOptions options;
     options.depth = o.depth.empty() ? calibratedDepthRange(calibration, o.calibration) : givenDepthRange(o.depth, calibration);
     result.scene = matchScene(calibration, cameras, options, command.quiet());

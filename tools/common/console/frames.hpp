@@ -35,6 +35,7 @@ public:
 
     const std::string& source() const { return source_; }
     const std::vector<std::string>& files() const { return files_; }    //!< empty: a video
+    std::vector<std::string> paths() const { return isVideo() ? std::vector<std::string>{source_} : files_; }
     //! What images of one moment are found by.
     std::vector<std::string> moments() const;
 
