@@ -4,6 +4,7 @@
 // Mistakes in what is given, told from images that do not fit.
 #include "diagnose/fit_quality.hpp"
 #include "diagnose/diagnosis.hpp"
+#include "diagnose/explained_error.hpp"
 #include "diagnose/image_disagreement.hpp"
 #include "diagnose/value_mistakes.hpp"
 #include "assess/rig_calibration.hpp"

@@ -3,6 +3,7 @@
 
 #include "assess/calibrate_images.hpp"
 #include "diagnose/diagnosis.hpp"
+#include "diagnose/explained_error.hpp"
 #include "diagnose/fit_quality.hpp"
 #include "calibrate/image_fit.hpp"
 #include "calibrate/pinhole_camera.hpp"

@@ -5,8 +5,6 @@
 #include "calibrate/estimated_parameters.hpp"
 #include "calibrate/units.hpp"
 #include "calibrate/window_face.hpp"
-#include "console/table.hpp"
-#include "measure/vector_length.hpp"
 #include <algorithm>
 #include <cmath>
 
@@ -58,16 +56,6 @@ void turnAxis(RigModel& rig, int owner, const Vec3d& by)
 {
     changeWindow(rig, owner, [&](GlassWindow& window) { window.axis = normalize(window.axis + by); });
     shareWindow(rig, owner);
-}
-
-bool hasTwoMedia(const RigModel& rig, int c)
-{
-    return hasDifferentMedia(rig.cameras[c]->window());
-}
-
-bool looksThroughWindow(const RigModel& rig, int c)
-{
-    return !rig.cameras[c]->window().thickness.empty() || hasTwoMedia(rig, c);
 }
 
 //! The camera as it was sees with this motion what it now sees: X -> motion X in its own frame.
@@ -133,7 +121,7 @@ private:
 
     void addWindow(int c)
     {
-        if (!rig_.ownsWindow(c) || !looksThroughWindow(rig_, c))
+        if (!rig_.ownsWindow(c) || !refracts(rig_.cameras[c]->window()))
             return;
         const GlassWindow window = rig_.cameras[c]->window();
         const std::string name = windowName(c);
@@ -145,7 +133,7 @@ private:
         add(name + " tilted by", c, {angle(2)}, [c](RigModel& rig, const VectorXd& d) { moveWindow(rig, c, d[0], d[1], 0.); });
         rows.back().isTilt = true;
         chart(name + ": tilt", {"x", "y"}, -1.);        // moveWindow's axes point against the image's
-        if (hasTwoMedia(rig_, c))
+        if (hasDifferentMedia(rig_.cameras[c]->window()))
         {
             const ChangedQuantity nearer = length(1, WIDE*depth_);
             add("distance of the " + name + " changed by", c, {nearer},
@@ -215,7 +203,7 @@ private:
     void addMedium()
     {
         const int count = count_;
-        const auto isOutside = [](const RigModel& rig, int c) { return hasTwoMedia(rig, c); };
+        const auto isOutside = [](const RigModel& rig, int c) { return hasDifferentMedia(rig.cameras[c]->window()); };
         for (int c = 0; c < count; c++)
             if (isOutside(rig_, c))
             {
@@ -339,60 +327,6 @@ VectorXd Change::ranges() const
         for (int i = 0; i < quantity.count; i++)
             ranges[at++] = quantity.range;
     return ranges;
-}
-
-static std::vector<ValueAboutAxis> aboutAxes(const Change& change, const VectorXd& value, const MatrixXd& covariance)
-{
-    const double factor = change.chart.empty() ? change.quantities[0].factor : change.chartFactor;
-    std::vector<ValueAboutAxis> about;
-    for (int i = 0; i < (int)value.size(); i++)
-        about.push_back({change.axes[i], factor*value[i], std::abs(factor)*std::sqrt(std::max(0., covariance(i, i)))});
-    return about;
-}
-
-std::vector<ChangedValue> valuesOf(const Change& change, const VectorXd& delta, const MatrixXd& covariance)
-{
-    std::vector<ChangedValue> values;
-    int at = 0;
-    for (const ChangedQuantity& quantity : change.quantities)
-    {
-        const VectorXd part = delta.segment(at, quantity.count);
-        const MatrixXd C = covariance.block(at, at, quantity.count, quantity.count);
-        const VectorLength length = lengthOf(part, C);
-        ChangedValue changed{quantity.factor*length.value, quantity.factor*length.std, quantity.unit};
-        if (quantity.count > 1 && (int)change.axes.size() == quantity.count)
-            changed.aboutAxes = aboutAxes(change, part, C);
-        values.push_back(changed);
-        at += quantity.count;
-    }
-    return values;
-}
-
-//! A length hides that one axis is known much worse than another.
-static bool isUnevenlyKnown(const std::vector<ValueAboutAxis>& axes)
-{
-    const double UNEVEN = 3.;
-    const auto [least, most] = std::minmax_element(axes.begin(), axes.end(), [](const auto& a, const auto& b) { return a.std < b.std; });
-    return most != axes.end() && most->std > UNEVEN*least->std;
-}
-
-std::string sentenceOf(const Change& change, const std::vector<ChangedValue>& values)
-{
-    std::string text = change.name;
-    for (size_t i = 0; i < values.size(); i++)
-    {
-        text += (i ? " and " : " ") + plusMinus(values[i].value, values[i].std) + (values[i].unit.empty() ? "" : " " + values[i].unit);
-        std::string separator = " (";
-        const bool tellsAxes = change.isTurn() || isUnevenlyKnown(values[i].aboutAxes);
-        for (size_t a = 0; tellsAxes && a < values[i].aboutAxes.size(); a++)
-        {
-            const ValueAboutAxis& about = values[i].aboutAxes[a];
-            text += separator + about.axis + " " + plusMinus(about.value, about.std);
-            separator = ", ";
-        }
-        text += tellsAxes && !values[i].aboutAxes.empty() ? ")" : "";
-    }
-    return text;
 }
 
 std::vector<Change> changesOf(const RigModel& rig, const std::string& unit, const Vec3d& middle)

@@ -43,25 +43,6 @@ struct Change
     VectorXd ranges() const;
 };
 
-struct ValueAboutAxis
-{
-    std::string axis;           //!< "x"
-    double value, std;
-};
-
-//! The estimate of one quantity of a change.
-struct ChangedValue
-{
-    double value, std;
-    std::string unit;
-    //! Of a vector: one may be known ten times as well as another, which a length does not say.
-    std::vector<ValueAboutAxis> aboutAxes = {};
-};
-std::vector<ChangedValue> valuesOf(const Change& change, const VectorXd& delta, const MatrixXd& covariance);
-
-//! "window of camera 1 tilted by 0.102 +- 0.004 degrees"
-std::string sentenceOf(const Change& change, const std::vector<ChangedValue>& values);
-
 /** The table. Each row frees one thing alone.
 @param unit of lengths, for the sentences; may be empty
 @param middle of the boards, in camera 1: about which they turn */

@@ -2,14 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "assess/rig_check.hpp"
-#include "assess/check_level.hpp"
-#include "assess/check_problem.hpp"
+#include "assess/change_naming.hpp"
 #include "measure/image_noise.hpp"
 #include "assess/swapped_images.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "measure/f_distribution.hpp"
-#include "diagnose/ranking.hpp"
 #include "console/failure.hpp"
+#include "console/lines.hpp"
 #include "math/dense.hpp"
 #include <algorithm>
 #include <cmath>
@@ -25,29 +24,10 @@ namespace {
 
 const double DEGREES = 180./CV_PI;
 const double NOT_KNOWN = std::numeric_limits<double>::quiet_NaN(), NO_FIT = std::numeric_limits<double>::infinity();
-// Of probabilities: images noisier than those of the calibration; residuals that no single change explains.
-const double NOISIER = 1e-4, UNEXPLAINED = 1e-4;
+const double NOISIER = 1e-4;                    // probability of images noisier than those of the calibration
 const double SHARE_OF_RESIDUALS = 0.01;         // of the false alarms: the test of all residuals, whatever caused them
 const double TOLD = 0.3;                        // of its range: what is known less well the images do not tell
 const double GROSS = 5.;                        // times the noise: images may have been exchanged, turned or mirrored
-
-//! A hypothesis of the table, tested.
-struct Tested
-{
-    const Change* change;
-    TestedDirections at;
-    double gain, probability;
-    CheckFit fit;               //!< chiSquare infinite: none
-};
-
-//! One that competes for the name.
-struct Candidate
-{
-    NamedChange named;
-    double chiSquare;
-    int parameters, observations;
-    const Tested* tested;       //!< null: images that are not what they are given for
-};
 
 class RigCheck
 {
@@ -188,40 +168,14 @@ private:
         result_.critical = criticalProbability(all, information_.G, result_.dof, (1. - SHARE_OF_RESIDUALS)*falseAlarm_);
     }
 
+    //! About the calibrated values: what a large change makes of the others is far from linear.
     void addCharted()
     {
-        std::vector<int> rows;
-        std::vector<double> ranges;
-        ChartedScore& charted = result_.charted;
-        // About the calibrated values: what a large change makes of the others is far from linear.
         if (!asCalibrated_.rows)
             asCalibrated_ = problem_->asCalibrated();
         const CheckProblem::Information information = problem_->information(changes_, asCalibrated_);
-        if (information.G.size() == 0)
-            return;
-        for (const Tested& tested : tested_)
-        {
-            const Change& change = *tested.change;
-            if (change.chart.empty() || tested.at.count() < change.size())
-                continue;
-            charted.changes.push_back(change);
-            for (int i = 0; i < change.size(); i++)
-            {
-                rows.push_back(tested.at.first + i);
-                ranges.push_back(change.ranges()[i]);
-            }
-        }
-        const int count = (int)rows.size(), parameters = columnCount(input_.rig);
-        charted.score.resize(count);
-        charted.information.resize(count, count);
-        charted.byParameters.resize(count, parameters);
-        for (int i = 0; i < count; i++)
-        {
-            charted.score[i] = information.score[rows[i]]/ranges[i];
-            charted.byParameters.row(i) = information.byParameters.row(rows[i]).head(parameters)/ranges[i];
-            for (int j = 0; j < count; j++)
-                charted.information(i, j) = information.G(rows[i], rows[j])/(ranges[i]*ranges[j]);
-        }
+        if (information.G.size() > 0)
+            result_.charted = chartedScoreOf(tested_, information, columnCount(input_.rig));
     }
 
     //! In units of the ranges: eigenvectors whose standard deviation is well within them.
@@ -232,22 +186,16 @@ private:
         return eigen.vectors.rightCols(told);
     }
 
-    double probabilityOfResiduals(double chiSquare, int parameters) const
-    {
-        const int count = problem_->observations() - parameters;
-        return std::isfinite(chiSquare) ? upperTailAnyF(count, result_.dof, chiSquare/count) : 0.;
-    }
-
     void decide()
     {
-        const double residuals = probabilityOfResiduals(unchanged_.chiSquare, 0);
+        const double residuals = probabilityOfResiduals(*problem_, unchanged_.chiSquare, 0, result_.dof);
         result_.sigmaSeen = result_.sigma*std::sqrt(unchanged_.chiSquare/problem_->observations());
         result_.changed = !isScene_ && residuals < SHARE_OF_RESIDUALS*falseAlarm_;
-        for (const Tested& tested : tested_)
+        for (const TestedChange& tested : tested_)
             result_.changed |= tested.probability < result_.critical;
     }
 
-    void fitOf(Tested& tested)
+    void fitOf(TestedChange& tested)
     {
         if (std::isfinite(tested.fit.chiSquare))
             return;
@@ -263,10 +211,10 @@ private:
     }
 
     //! Each by itself, on all processors.
-    void fitThose(const std::function<bool(const Tested&)>& isWanted)
+    void fitThose(const std::function<bool(const TestedChange&)>& isWanted)
     {
-        std::vector<Tested*> those;
-        for (Tested& tested : tested_)
+        std::vector<TestedChange*> those;
+        for (TestedChange& tested : tested_)
             if (isWanted(tested))
                 those.push_back(&tested);
         parallel_for_(Range(0, (int)those.size()), [&](const Range& range) {
@@ -274,147 +222,38 @@ private:
                 fitOf(*those[i]); }, (double)those.size());
     }
 
-    void addCandidate(const Tested& tested)
-    {
-        if (!std::isfinite(tested.fit.chiSquare))
-            return;
-        const Change& change = *tested.change;
-        const std::vector<ChangedValue> values = valuesOf(change, tested.fit.delta, tested.fit.covariance);
-        NamedChange named{change.name, sentenceOf(change, values), change.camera, values, tested.probability};
-        candidates_.push_back({named, tested.fit.chiSquare, tested.at.count(), problem_->observations(), &tested});
-    }
-
-    void addUndone(const std::vector<Undone>& all)
-    {
-        for (const Undone& undone : all)
-        {
-            try
-            {
-                const CheckProblem problem(input_, undone.views, result_.sigma);
-                const CheckFit fit = problem.fitUnchanged();
-                if (!std::isfinite(fit.chiSquare))
-                    continue;
-                const int parameters = std::max(1, 6*undone.poses);
-                const double probability = probabilityOf(std::max(0., unchanged_.chiSquare - fit.chiSquare), parameters, result_.dof);
-                candidates_.push_back({{undone.name, undone.name, undone.camera, {}, probability}, fit.chiSquare, parameters,
-                                       problem.observations(), nullptr});
-            }
-            catch (const Failure&) {}           // no pose
-            catch (const cv::Exception&) {}
-        }
-    }
-
-    double noiseOf(const Candidate& c) const { return c.chiSquare/std::max(1, problem_->observations() - c.parameters); }
-
-    //! One candidate's parameters contain those of another: it is no other explanation.
-    bool contains(const Tested& large, const Tested& small) const
-    {
-        if (large.at.count() <= small.at.count())
-            return false;
-        const MatrixXd outer = problem_->directionsOf(*large.change), inner = problem_->directionsOf(*small.change);
-        const double NOTHING = 1e-4;
-        const MatrixXd rest = inner - product(outer, PivotedQR(outer).solve(inner));
-        return rest.norm() < NOTHING*inner.norm();
-    }
-
-    //! Of two of which one contains the other, the one that has no more parameters than it is worth.
-    void dropNested()
-    {
-        double variance = NO_FIT;
-        for (const Candidate& c : candidates_)
-            variance = std::min(variance, noiseOf(c));
-        variance = std::max(1., variance);
-        const double penalty = std::log((double)problem_->observations());
-        const auto criterion = [&](const Candidate& c) { return c.chiSquare/variance + penalty*c.parameters; };
-        std::vector<Candidate> kept;
-        for (const Candidate& large : candidates_)
-            if (std::none_of(candidates_.begin(), candidates_.end(), [&](const Candidate& small) {
-                    return large.tested && small.tested && criterion(small) <= criterion(large)
-                           && contains(*large.tested, *small.tested); }))
-                kept.push_back(large);
-        candidates_ = kept;
-    }
-
     void name()
     {
         double largest = 0.;
-        for (const Tested& tested : tested_)
+        for (const TestedChange& tested : tested_)
             largest = std::max(largest, tested.gain);
         // A scene has thousands of points: what gains far less, to first order, is not fitted.
         const double FAR_LESS = 0.5;
-        fitThose([&](const Tested& tested) { return !isScene_ || tested.gain > FAR_LESS*largest; });
-        for (const Tested& tested : tested_)
-            addCandidate(tested);
-        addUndone(isScene_ ? std::vector<Undone>() : unrelatedImages(input_.rig, views_));
+        fitThose([&](const TestedChange& tested) { return !isScene_ || tested.gain > FAR_LESS*largest; });
+        ChangeNaming naming(*problem_, unchanged_, isScene_, result_);
+        for (const TestedChange& tested : tested_)
+            naming.add(tested);
+        naming.addUndone(input_, isScene_ ? std::vector<Undone>() : unrelatedImages(input_.rig, views_));
         // Also where a change explains all: of a camera in the middle of its images, mirrored ones look like a window mirrored.
         if (!isScene_ && !(unchanged_.chiSquare < GROSS*GROSS*problem_->observations()))
-            addUndone(swappedImages(input_.rig, views_));
-        dropNested();
-        rankThem();
+            naming.addUndone(input_, swappedImages(input_.rig, views_));
+        named_ = naming.name();
     }
 
-    void rankThem()
-    {
-        const double pixels2 = result_.sigma*result_.sigma;
-        std::vector<Hypothesis> tried;
-        for (size_t i = 0; i < candidates_.size(); i++)
-            tried.push_back({std::to_string(i), pixels2*candidates_[i].chiSquare, candidates_[i].parameters});
-        const double asGiven = std::isfinite(unchanged_.chiSquare) ? pixels2*unchanged_.chiSquare : NO_FIT;
-        std::vector<Hypothesis> ranked = rank({"", asGiven, 0}, tried, problem_->observations(), result_.sigma);
-        if (ranked.empty())                     // too small a change to tell
-            ranked = rank({"", NO_FIT, 0}, tried, problem_->observations(), result_.sigma);
-        for (const Hypothesis& h : ranked)
-            named_.push_back(candidates_[std::stoul(h.sentence)]);
-        const auto isExplained = [this](const Candidate& c) { return probabilityOfResiduals(c.chiSquare, c.parameters) > UNEXPLAINED; };
-        result_.isMixup = !named_.empty() && !named_[0].tested;
-        result_.explained = !named_.empty() && isExplained(named_[0]);
-        // Of a large contradiction a small share is much: where one explains it all, what the noise refutes is no other explanation.
-        if (result_.explained)
-            named_.erase(std::remove_if(named_.begin(), named_.end(), [&](const Candidate& c) { return !isExplained(c); }), named_.end());
-        tellWhatCanHappenFirst();
-        std::vector<NamedChange>& changes = result_.changes;
-        for (const Candidate& c : named_)           // a board that looks the same turned by half can be numbered in two ways
-            if (std::none_of(changes.begin(), changes.end(), [&](const NamedChange& n) { return n.sentence == c.named.sentence; }))
-                changes.push_back(c.named);
-        if (named_.empty())
-            return;
-        result_.sigmaSeen = result_.sigma*std::sqrt(named_[0].chiSquare/(problem_->observations() - named_[0].parameters));
-    }
-
-    /* What explains as much is told in the order of what can happen. Nobody said that the pane is another. And of a scene: a camera turns
-    in its mount before a window moves, and both before a sensor does in its camera, which a scene hardly tells from a turn. About the base
-    line a turn of one of two cameras is one of the other: both are told first. */
-    void tellWhatCanHappenFirst()
-    {
-        const auto end = std::stable_partition(named_.begin(), named_.end(), [](const Candidate& c) {
-            return !c.tested || !c.tested->change->isOfAnotherPane; });
-        if (!isScene_ || end == named_.begin())
-            return;
-        const double AS_LIKELY = 10., best = named_[0].chiSquare;       // difference of two chi^2
-        const auto less = std::stable_partition(named_.begin(), end, [=](const Candidate& c) { return c.chiSquare < best + AS_LIKELY; });
-        std::stable_sort(named_.begin(), less, [](const Candidate& a, const Candidate& b) {
-            return a.tested->change->ease < b.tested->change->ease; });
-        for (auto c = named_.begin(); c != less && c->tested->change->isTurn(); ++c)
-            result_.mayHaveTurned.push_back(c->tested->change->turnedCamera());
-    }
-
-    bool isNamed(const Tested& tested) const
-    {
-        return std::any_of(named_.begin(), named_.end(), [&](const Candidate& c) { return c.tested == &tested; });
-    }
+    bool isNamed(const TestedChange& tested) const { return std::find(named_.begin(), named_.end(), &tested) != named_.end(); }
 
     void addWindows()
     {
-        const auto isTold = [](const Tested& t) {
+        const auto isTold = [](const TestedChange& t) {
             return (t.change->isTilt || t.change->isShift) && t.at.count() == t.change->size(); };
         fitThose(isTold);
-        for (const Tested& tested : tested_)
+        for (const TestedChange& tested : tested_)
             if (isTold(tested))
                 result_.windows.push_back(windowOf(tested));
     }
 
     //! The covariance of the linear test, which holds whatever was found.
-    MatrixXd covarianceOf(const Tested& tested) const
+    MatrixXd covarianceOf(const TestedChange& tested) const
     {
         const MatrixXd ranges = tested.change->ranges().asDiagonal();
         const int n = tested.at.count();
@@ -423,7 +262,7 @@ private:
 
     void addTurns()
     {
-        for (const Tested& tested : tested_)
+        for (const TestedChange& tested : tested_)
         {
             const Change& change = *tested.change;
             if (!change.isTurn() || tested.at.count() < change.size())
@@ -433,7 +272,7 @@ private:
         }
     }
 
-    WindowCheck windowOf(const Tested& tested) const
+    WindowCheck windowOf(const TestedChange& tested) const
     {
         const int c = tested.change->camera;
         const bool isSeen = !result_.changed || isNamed(tested);
@@ -471,8 +310,8 @@ private:
     CheckFit unchanged_, asCalibrated_;
     std::vector<Change> changes_;
     CheckProblem::Information information_;
-    std::vector<Tested> tested_;
-    std::vector<Candidate> candidates_, named_;
+    std::vector<TestedChange> tested_;
+    std::vector<const TestedChange*> named_;
 };
 
 } // namespace
@@ -499,11 +338,10 @@ std::string causesIn(const CheckResult& result)
             text += (text.empty() ? "" : " or ") + cv::format("camera %d", camera + 1);
         text += " turned, and these images do not tell which: ";
     }
-    for (size_t i = 0; i < std::min(MOST, result.changes.size()); i++)
-        text += (i ? "; or " : "") + result.changes[i].sentence;
-    if (result.changes.size() > MOST)
-        text += cv::format("; or one of %zu others", result.changes.size() - MOST);
-    return text;
+    std::vector<std::string> sentences;
+    for (const NamedChange& change : result.changes)
+        sentences.push_back(change.sentence);
+    return text + alternatives(sentences, MOST);
 }
 
 std::string causesOf(const Calibration& calibration, const std::vector<View>& views, double pixelSigma)

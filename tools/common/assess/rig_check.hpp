@@ -4,7 +4,8 @@
 #ifndef REFRACT_TOOLS_RIG_CHECK_HPP
 #define REFRACT_TOOLS_RIG_CHECK_HPP
 
-#include "assess/change.hpp"
+#include "assess/changed_value.hpp"
+#include "assess/charted_score.hpp"
 #include "assess/check_input.hpp"
 #include "calibrate/rig_data.hpp"
 #include "measure/view_observations.hpp"
@@ -49,17 +50,6 @@ struct NamedChange
     int camera;                     //!< from 0; negative: of the rig as a whole
     std::vector<ChangedValue> values;
     double probability;             //!< of so large a gain or a larger one if nothing changed
-};
-
-/** What the images tell about the changes that have a control chart, in the parameters of these:
-
-    score = information change + byParameters dp + noise,    cov(score) = information where nothing changed. */
-struct ChartedScore
-{
-    std::vector<Change> changes;    //!< all of whose parameters the images tell, in the table's order
-    VectorXd score;                 //!< of their parameters, one change after the other
-    MatrixXd information;
-    MatrixXd byParameters;          //!< by the error of the calibrated parameters, in the order of withWedges()
 };
 
 struct CheckResult

@@ -73,6 +73,14 @@ std::vector<std::string> firstOf(const std::vector<std::string>& lines, size_t c
     return first;
 }
 
+std::string alternatives(const std::vector<std::string>& sentences, size_t most)
+{
+    std::string text;
+    for (size_t i = 0; i < std::min(most, sentences.size()); i++)
+        text += (i ? "; or " : "") + sentences[i];
+    return text + (sentences.size() > most ? "; or one of " + std::to_string(sentences.size() - most) + " others" : "");
+}
+
 bool takeLine(std::istream& in, std::string& line)
 {
     const int END = std::istream::traits_type::eof();

@@ -5,6 +5,7 @@
 #define REFRACT_TOOLS_LINES_HPP
 
 #include <istream>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,9 @@ std::vector<std::string> brokenInto(const std::string& text, size_t columns, con
 
 //! The first of these lines; where some are missing the last ends with "...".
 std::vector<std::string> firstOf(const std::vector<std::string>& lines, size_t count, size_t columns);
+
+//! "a; or b; or c". @param most of them; then how many others there are
+std::string alternatives(const std::vector<std::string>& sentences, size_t most = std::numeric_limits<size_t>::max());
 
 //! One line of a file, whichever of LF, CR LF or CR alone ends it; false: there is none.
 bool takeLine(std::istream& in, std::string& line);

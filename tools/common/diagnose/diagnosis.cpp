@@ -9,6 +9,7 @@
 #include "diagnose/value_mistakes.hpp"
 #include "calibrate/image_fit.hpp"
 #include "console/failure.hpp"
+#include "console/lines.hpp"
 #include "console/median.hpp"
 #include "console/table.hpp"
 #include <algorithm>
@@ -55,12 +56,7 @@ bool isFound(const std::vector<Explanation>& explaining, double clean)
 
 std::string joined(const std::vector<std::string>& reasons)
 {
-    if (reasons.empty())
-        return NOTHING_TRIED;
-    std::string text;
-    for (size_t i = 0; i < reasons.size(); i++)
-        text += (i ? "; or " : "") + reasons[i];
-    return text;
+    return reasons.empty() ? NOTHING_TRIED : alternatives(reasons);
 }
 
 bool hasBoardsOnly(const CalibrationInput& input)
@@ -174,10 +170,6 @@ std::string fits(const CalibrationInput& input, const Explanation& e, double cle
     const bool isMore = clean > 0. && !isBent && e.px > std::hypot(clean, allowedError(input));
     return isMore ? text + format("; or something else is wrong, as more than %.2g px is not noise", clean) : text;
 }
-
-} // namespace
-
-namespace {
 
 /** What explains images by themselves. Images exchanged, turned or of other places hide much of a window of another shape, which none of
 that makes right: then the shape explains far more. */
@@ -396,59 +388,5 @@ void requireNoCause(const CalibrationInput& input, const MixUps& mixUps, const P
 }
 
 void refuseUnexplained(const CalibrationInput& input, const PlainFit& plain) { refuse(input, plain.px, {}); }
-
-namespace {
-
-//! All reasons there may be; whether images explain some.
-std::vector<std::string> reasonsFor(const CalibrationInput& input, bool& explained)
-{
-    std::vector<std::string> reasons = diagnose(input);
-    explained = !reasons.empty();
-    reasons.insert(reasons.end(), input.notices.begin(), input.notices.end());
-    return reasons;
-}
-
-/** Of a pane before each camera an image tells the tilt only through perspective; of one that cameras share, they tell it together. Not a
-cause of errors: windows of their own fit as well. */
-std::string sharingAdvice(const CalibrationInput& input)
-{
-    if (!isRig(input) || !input.options.windows.empty() || input.options.window.shape != WINDOW_FLAT)
-        return "";
-    const Explanation shared = sharedWindows(input);
-    if (!(shared.px < largestSoundError(input.data)))
-        return "";
-    return format("With %s they fit within %.2g px: say so if these cameras look through one window. ", shared.sentence.c_str(), shared.px);
-}
-
-//! A fit does not converge along what is hardly determined.
-std::string undeterminedAdvice(const CalibrationInput& input)
-{
-    const int flags = input.options.flags;
-    // The distance is set free without being asked for where it is needed.
-    const bool asked = flags & (GLASS_FREE_THICKNESS | GLASS_FREE_INDEX | GLASS_FREE_OUTER_INDEX | GLASS_FREE_INTRINSICS);
-    return "the images hardly determine what is free. " + sharingAdvice(input) + (asked ? "Leave out --free=..., g" : "G")
-        + "ive what you know (--thickness, --index, --distance, --camera), or add images: pairs, more tilt, more depth";
-}
-
-} // namespace
-
-std::string explainError(const std::string& error, const CalibrationInput& input)
-{
-    bool explained;
-    const std::vector<std::string> reasons = reasonsFor(input, explained);
-    return reasons.empty() ? error : error + ". However, " + joined(reasons);
-}
-
-std::string explainError(const CalibrationError& error, const CalibrationInput& input)
-{
-    if (error.cause != CalibrationError::NOT_CONVERGED)
-        return explainError(error.err, input);
-    bool explained;
-    const std::vector<std::string> reasons = reasonsFor(input, explained);
-    const std::string advice = undeterminedAdvice(input);
-    if (explained)          // what fits is likelier than that nothing would
-        return error.reason + ": " + joined(reasons) + ". If it is not that, " + advice;
-    return error.reason + ": " + advice + (reasons.empty() ? "" : ". However, " + joined(reasons));
-}
 
 } // namespace tools

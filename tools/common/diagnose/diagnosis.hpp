@@ -46,12 +46,6 @@ void requireNoCause(const CalibrationInput& input, const MixUps& mixUps, const P
 //! Throws Failure: requireNoCause found nothing, and without outliers the images fit no better.
 [[noreturn]] void refuseUnexplained(const CalibrationInput& input, const PlainFit& plain);
 
-//! An error of a calibration, with the explanations.
-std::string explainError(const std::string& error, const CalibrationInput& input);
-
-//! The same of what fitImages threw, with what to do where the fit did not converge.
-std::string explainError(const cv::refract::CalibrationError& error, const CalibrationInput& input);
-
 } // namespace tools
 
 #endif // REFRACT_TOOLS_DIAGNOSIS_HPP

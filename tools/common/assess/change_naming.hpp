@@ -1,0 +1,53 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#ifndef REFRACT_TOOLS_CHANGE_NAMING_HPP
+#define REFRACT_TOOLS_CHANGE_NAMING_HPP
+
+#include "assess/rig_check.hpp"
+#include "assess/swapped_images.hpp"
+
+/* Which of the changes that were tested explains new images. */
+namespace tools {
+
+//! Of so large residuals or larger ones from noise alone. @param parameters that were estimated; dof of the noise
+double probabilityOfResiduals(const CheckProblem& problem, double chiSquare, int parameters, double dof);
+
+class ChangeNaming
+{
+public:
+    //! All outlive it. @param result its sigma and dof; name() tells it what explains the images
+    ChangeNaming(const CheckProblem& problem, const CheckFit& unchanged, bool isScene, CheckResult& result)
+        : problem_(problem), unchanged_(unchanged), isScene_(isScene), result_(result) {}
+    void add(const TestedChange& tested);       //!< if it was fitted
+    void addUndone(const CheckInput& input, const std::vector<Undone>& all);
+    //! @return the changes that were named
+    std::vector<const TestedChange*> name();
+
+private:
+    //! One that competes for the name.
+    struct Candidate
+    {
+        NamedChange named;
+        double chiSquare;
+        int parameters;
+        const TestedChange* tested;     //!< null: images that are not what they are given for
+    };
+
+    double noiseOf(const Candidate& c) const { return c.chiSquare/std::max(1, problem_.observations() - c.parameters); }
+    bool isExplained(const Candidate& c) const;
+    bool contains(const TestedChange& large, const TestedChange& small) const;
+    void dropNested();
+    std::vector<Candidate> ranked() const;
+    void tellWhatCanHappenFirst(std::vector<Candidate>& named) const;
+
+    const CheckProblem& problem_;
+    const CheckFit& unchanged_;
+    const bool isScene_;
+    CheckResult& result_;
+    std::vector<Candidate> candidates_;
+};
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_CHANGE_NAMING_HPP
