@@ -3,9 +3,10 @@
 
 #include "assess/rig_check.hpp"
 #include "measure/consistency.hpp"
+#include "measure/measured_doubts.hpp"
+#include "measure/measured_views.hpp"
 #include "measure/measurement.hpp"
 #include "measure/outside_image.hpp"
-#include "measure/length_scale.hpp"
 #include "measure/target_lengths.hpp"
 #include "calibrate/conditions.hpp"
 #include "calibrate/units.hpp"
@@ -15,16 +16,13 @@
 #include "console/outputs.hpp"
 #include "console/table.hpp"
 #include "console/view_names.hpp"
-#include "formats/point_table.hpp"
-#include "target/detected_images.hpp"
 
 #include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <limits>
-#include <map>
 #include <memory>
-#include <set>
+#include <optional>
 #include <sstream>
 
 static const char MANUAL[] = R"(Measures the points of a target, in the frame of camera 1, from images through the window.
@@ -68,146 +66,24 @@ namespace fs = std::filesystem;
 
 struct Options
 {
-    std::string calibration, viewPattern, points, plane, out;
-    std::vector<std::string> images;            //!< of each camera; empty: it took none
+    MeasuredFiles files;
+    std::string plane, out;
     std::vector<std::string> compareWith;
     TargetOptions target;
     double pixelSigma = 0.;
     bool compare = false, noWindow = false;
     std::string unit;
     ConditionsOptions conditions;
-    PixelOrigin origin;
 
-    bool triangulates() const { return plane.empty() && (images.size() > 1 || !points.empty()); }
+    bool triangulates() const { return plane.empty() && (files.images.size() > 1 || !files.points.empty()); }
     //! From the pose of a target of known shape, the distances come out as they went in; other points have no known ones.
     bool lengthsMeasured() const { return target.given() && (triangulates() || !plane.empty()); }
 };
 
-//! A view, and the names of its points.
-struct MeasuredView : View
+//! On which the points lie; none: no plane is given.
+std::optional<cv::Vec4d> planeOf(const Options& options)
 {
-    std::vector<std::string> ids;
-};
-
-void warnNotFound(const DetectedImages& set, const std::string& which, const Command& command)
-{
-    if (!set.withoutTarget.empty())
-        command.warn("skipped" + which + ", as the target was not found: " + listed(set.withoutTarget));
-}
-
-//! Views of a single camera cannot be triangulated.
-void warnUnpaired(const std::vector<View>& views, size_t cameras, const Command& command)
-{
-    for (size_t c = 0; c < cameras; c++)
-    {
-        std::vector<std::string> alone;
-        for (const View& view : views)
-            if (view.countGlass() == 1 && view.hasGlass((int)c))
-                alone.push_back(view.stem);
-        if (!alone.empty())
-            command.warn(format("skipped of camera %zu, as ", c + 1)
-                         + (cameras == 2 ? format("camera %zu has no", 2 - c) : std::string("no other camera has an"))
-                         + " image of that name with the target: " + listed(alone));
-    }
-}
-
-//! If there is one image for each camera, they are one view, whatever their names.
-void nameSingles(RigImages& sets)
-{
-    std::string name;
-    for (DetectedImages& set : sets.glass)
-        if (set.files.size() > 1 || set.images.size() > 1)
-            return;
-    for (DetectedImages& set : sets.glass)
-        for (DetectedImage& image : set.images)
-            image.stem = name = name.empty() ? image.stem : name;
-}
-
-//! As a target of dots calls them; else they are counted.
-MeasuredView withIds(const View& view, const Target* target)
-{
-    MeasuredView measured{view, target ? target->ids() : std::vector<std::string>()};
-    for (size_t i = measured.ids.size(); i < view.objectPoints.size(); i++)
-        measured.ids.push_back(std::to_string(i));
-    return measured;
-}
-
-std::vector<MeasuredView> readImages(const Options& options, const Calibration& calibration, const Target* target,
-                              const Command& command)
-{
-    RigSources sources;
-    sources.channel = calibration.channel;
-    sources.yFrom = options.origin.yFrom;
-    sources.viewPattern = options.viewPattern;
-    PerCamera<cv::Size> sizes;
-    std::copy(options.images.begin(), options.images.end(), sources.glass.begin());
-    for (size_t c = 0; c < calibration.cameras.size(); c++)
-        sizes[c] = calibration.cameras[c].camera->imageSize();
-    RigImages sets = readRigImages(sources, target, sizes, command.quiet());
-    for (size_t c = 0; c < options.images.size(); c++)
-        warnNotFound(sets.glass[c], options.images.size() == 1 ? "" : format(" of camera %zu", c + 1), command);
-    if (options.triangulates())
-        nameSingles(sets);
-    const std::vector<View> views = groupIntoViews(target, sets, false, 1).views;
-    std::vector<MeasuredView> measured;
-    for (const View& view : views)
-        if (view.countGlass() > 1 || !options.triangulates())
-            measured.push_back(withIds(view, target));
-    if (measured.empty() && options.images.size() == 2)
-        throw Failure("no image of '" + options.images[0] + "' has the name of one of '" + options.images[1]
-                      + "': images of one moment need equal names");
-    if (measured.empty())
-        throw Failure("no two cameras have images of one name with the target: images of one moment need equal names");
-    if (options.triangulates())
-        warnUnpaired(views, options.images.size(), command);
-    return measured;
-}
-
-//! Whether each id stands once, be it in several images.
-bool isPointPerId(const CsvTable& table)
-{
-    std::set<std::string> ids;
-    for (const CsvTable::Row& row : table.rows())
-        ids.insert(table.text(row, "id"));
-    return ids.size() == table.rows().size();
-}
-
-//! Points that are no target.
-std::vector<MeasuredView> readPoints(const Options& options, const Calibration& calibration)
-{
-    const CsvTable table = readPointTable(options.points, {"id", "u1", "v1"}, "a file of image points",
-                                          {options.origin.yFrom, calibration.imageSizes()});
-    MeasuredView view;
-    view.stem = stemOf(options.points);
-    const int cameras = (int)calibration.cameras.size();
-    if (table.find(format("u%d", cameras + 1)) >= 0)
-        throw Failure(format("'%s' has pixels of camera %d, the calibration '%s' has %d camera%s", options.points.c_str(),
-                             cameras + 1, options.calibration.c_str(), cameras, cameras == 1 ? "" : "s"));
-    std::map<std::string, int> lineOf;
-    const bool isOfMoments = table.find("image") >= 0 && !isPointPerId(table);
-    for (const CsvTable::Row& row : table.rows())
-    {
-        view.ids.push_back((isOfMoments ? table.text(row, "image") + "/" : "") + table.text(row, "id"));
-        const auto first = lineOf.emplace(view.ids.back(), row.line);
-        if (!first.second)
-            throw Failure(table.where(row) + format(": the id '%s' stands in line %d already: give each point an id of its own, in one "
-                                                    "row with its pixels in all cameras", view.ids.back().c_str(), first.first->second));
-        view.objectPoints.emplace_back();
-        for (int c = 0; c < cameras; c++)
-        {
-            const std::string u = format("u%d", c + 1), v = format("v%d", c + 1);
-            if (table.find(u) < 0 || table.find(v) < 0)
-                continue;
-            view.glass[c].push_back(table.pixelOrNone(row, u, v));
-        }
-    }
-    return {view};
-}
-
-std::vector<MeasuredView> readMeasuredViews(const Options& options, const Calibration& calibration, const Target* target,
-                              const Command& command)
-{
-    return options.points.empty() ? readImages(options, calibration, target, command) : readPoints(options, calibration);
+    return options.plane.empty() ? std::nullopt : std::optional<cv::Vec4d>(parsePlane(options.plane));
 }
 
 double pixelSigma(const Options& options, const Calibration& calibration)
@@ -222,7 +98,7 @@ Measurement measureAnyPixels(const Options& options, const Calibration& calibrat
         return measureRig(calibration, glassPixels(view, (int)calibration.cameras.size()), sigma);
     if (options.plane.empty())
         return measureTarget(calibration, view.objectPoints, view.glass[0], sigma);
-    return measureOnPlane(calibration, view.glass[0], parsePlane(options.plane), sigma);
+    return measureOnPlane(calibration, view.glass[0], *planeOf(options), sigma);
 }
 
 Measurement measure(const Options& options, const Calibration& calibration, const MeasuredView& view)
@@ -249,115 +125,21 @@ void checkMeasurements(const Options& options, const Calibration& calibration, s
             checkPose(pixelSigma(options, calibration), m);
 }
 
-//! What contradicts itself, or empty.
-std::string contradictionIn(const std::vector<MeasuredView>& measured, const std::vector<Measurement>& results)
-{
-    std::vector<std::string> names;
-    int points = 0, all = 0, nowhere = 0;
-    double worst = 0;
-    for (size_t i = 0; i < results.size(); i++)
-    {
-        const Measurement& m = results[i];
-        all += (int)m.points.size();
-        if (!m.inconsistent())
-            continue;
-        names.push_back(measured[i].stem);
-        points += m.inconsistent();
-        for (size_t k = 0; k < m.points.size(); k++)
-            nowhere += m.status[k] == INCONSISTENT && m.points[k].x != m.points[k].x;
-        worst = std::max(worst, m.worstResidual);
-    }
-    if (names.empty())
-        return "";
-    const bool pairs = results[0].pixels.size() == 2, rig = results[0].pixels.size() > 1;
-    const std::string left = pairs ? "the two pixels of a point miss each other by up to %.3g px"
-                             : rig ? "the pixels of a point miss each other by up to %.3g px RMS per coordinate"
-                                   : "the pose leaves residuals of up to %.3g px per coordinate";
-    return format("%d of %d points contradict themselves by far more than the noise: ", points, all)
-        + format(left.c_str(), pairs ? std::sqrt(2.)*worst : worst) + " (" + listed(names) + "; status 9"
-        + (nowhere == points ? ", no answer" : nowhere ? format(", %d of them without answer", nowhere)
-           : rig ? ", large sx, sy, sz" : ", no sx, sy, sz")
-        + "). "
-        + (rig ? std::string("Check that ") + (pairs ? "left and right are not swapped, that the images of a pair"
-                                                     : "the cameras are in the calibration's order, that images of one name")
-                 + " are of one moment, and that no camera and no window has moved since the calibration"
-                 : "Check --size, --square, that the target is flat, and that camera and window are those of the calibration");
-}
-
-//! Points outside of their images; empty: there are none.
-std::string outsideImages(const Calibration& calibration, const std::vector<MeasuredView>& measured,
-                          const std::vector<Measurement>& results)
-{
-    for (size_t i = 0; i < results.size(); i++)
-    {
-        const std::string text = outsideIn(calibration, results[i], measured[i].ids);
-        if (!text.empty())
-            return (results.size() > 1 ? "'" + measured[i].stem + "': " : "") + text;
-    }
-    return "";
-}
-
-bool mostContradict(const std::vector<Measurement>& results)
-{
-    int all = 0, wrong = 0;
-    for (const Measurement& m : results)
-    {
-        all += m.seenPoints();
-        wrong += m.contradicting() + (int)std::count(m.status.begin(), m.status.end(), OUTSIDE_IMAGE);
-    }
-    return 2*wrong > all;
-}
-
-//! What lengths say that are not the target's, or empty.
-std::string wrongLengths(const Options& options, double square, const Calibration& calibration,
-                         const std::vector<MeasuredView>& measured, const std::vector<Measurement>& results)
-{
-    const double FAR_OFF = 0.2, CONTRADICTING = 5.;     // of a plane, whose error is not said; standard deviations, as those of a point
-    const LengthScale scale = lengthScaleOf(calibration, {measured.begin(), measured.end()}, results, pixelSigma(options, calibration),
-                                            USUAL_SQUARE_STD, options.triangulates() ? std::nullopt
-                                            : std::optional<cv::Vec4d>(parsePlane(options.plane)));
-    const bool isFar = std::abs(scale.ratio - 1.) > FAR_OFF, contradicts = options.triangulates() && scale.deviations() > CONTRADICTING;
-    if (!isFar && !contradicts)
-        return "";
-    return format("the distances between neighbouring points are on average %.*g times those of the target", isFar ? 3 : 6, scale.ratio)
-        + (contradicts ? format(", %.3g standard deviations of noise, calibration and a printed board from 1", scale.deviations())
-                       : std::string())
-        + format(": is --square=%g right, in the unit of the calibration, and are ", square)
-        + (isFar ? "images and calibration of the same cameras?" : "cameras and windows where they were when they were calibrated?");
-}
-
 //! What would explain a contradiction, if a target's shape is known; or empty.
 std::string causeOf(const Options& options, const Calibration& calibration, const std::vector<MeasuredView>& measured)
 {
     const std::vector<View> views(measured.begin(), measured.end());
-    return options.points.empty() ? causesOf(calibration, views, pixelSigma(options, calibration)) : "";
-}
-
-void warnNoisier(const Options& options, const Calibration& calibration, const std::vector<MeasuredView>& measured,
-                const std::vector<Measurement>& results, const Command& command)
-{
-    const double sigma = pixelSigma(options, calibration), few = 3.;
-    std::vector<std::string> names;
-    double worst = 0;
-    for (size_t i = 0; i < results.size(); i++)
-        if (!results[i].inconsistent() && results[i].noise > few*sigma)
-        {
-            names.push_back(measured[i].stem);
-            worst = std::max(worst, results[i].noise);
-        }
-    if (!names.empty())
-        command.warn(format("the pixels are noisier than in the calibration: up to %.3g px per coordinate instead of %.3g px, in ",
-                            worst, sigma) + listed(names) + "; sx, sy, sz include this. Check focus, light, motion, and the target");
+    return options.files.points.empty() ? causesOf(calibration, views, pixelSigma(options, calibration)) : "";
 }
 
 //! What sx, sy and sz leave out.
 void sayUncovered(const Options& options, const Calibration& calibration, const Command& command)
 {
     if (!(pixelSigma(options, calibration) > 0))
-        command.warn("'" + options.calibration + "' does not say how large the noise of a pixel is, so sx, sy, sz are not known: "
+        command.warn("'" + options.files.calibration + "' does not say how large the noise of a pixel is, so sx, sy, sz are not known: "
                      "calibrate with refract_calib, or give --pixel-sigma");
     else if (calibration.covariance.empty())
-        command.warn("'" + options.calibration + "' has no covariance: sx, sy, sz cover the noise of the pixels, and take the "
+        command.warn("'" + options.files.calibration + "' has no covariance: sx, sy, sz cover the noise of the pixels, and take the "
                      "calibration as exact");
 }
 
@@ -435,7 +217,7 @@ std::vector<Calibration> readOthers(const Options& options, const Calibration& c
     {
         others.push_back(readCalibration(file));
         if (others.back().cameras.size() != calibration.cameras.size())
-            throw Failure("'" + file + "' has another number of cameras than '" + options.calibration + "'");
+            throw Failure("'" + file + "' has another number of cameras than '" + options.files.calibration + "'");
     }
     return others;
 }
@@ -457,7 +239,7 @@ void printTable(const Options& options, const Calibration& calibration, const st
     const bool alone = !options.compare && options.compareWith.empty();
     table.add(rowOf(alone ? "measured" : "with the window", measured, results, lengthsMeasured));
     std::cout << measured.size() << (measured.size() == 1 ? " view" : " views")
-              << (calibration.channel == BRIGHTNESS || !options.points.empty() ? std::string()
+              << (calibration.channel == BRIGHTNESS || !options.files.points.empty() ? std::string()
                   : ", the " + nameOf(calibration.channel) + " channel of colour images, as calibrated")
               << (lengthsMeasured ? "; distances between neighbouring points, measured minus true:\n\n"
               : options.triangulates() || !options.plane.empty() ? ":\n\n" : "; points from the pose of the target:\n\n");
@@ -466,13 +248,13 @@ void printTable(const Options& options, const Calibration& calibration, const st
 
 void addOptions(OptionParser& parser, Options& options)
 {
-    parser.add("calib.yml", options.calibration, "what refract_calib wrote").required();
-    parser.add("IMAGE", options.images, "of camera 1, of camera 2, ...");
-    addViewPattern(parser, options.viewPattern);
-    parser.add("--points", options.points, "image points that are no target, in place of images: id,u1,v1,u2,v2,...");
+    parser.add("calib.yml", options.files.calibration, "what refract_calib wrote").required();
+    parser.add("IMAGE", options.files.images, "of camera 1, of camera 2, ...");
+    addViewPattern(parser, options.files.viewPattern);
+    parser.add("--points", options.files.points, "image points that are no target, in place of images: id,u1,v1,u2,v2,...");
     options.target.addTo(parser, false);
     options.target.addDotsTo(parser);
-    addYFrom(parser, options.origin.yFrom);
+    addYFrom(parser, options.files.origin.yFrom);
     parser.add("--unit", options.unit, "unit of --square; what refract_calib had, or nothing")
         .check(isMember(unitNames()));
     options.conditions.addTo(parser);
@@ -487,27 +269,27 @@ void addOptions(OptionParser& parser, Options& options)
 
 void checkCombination(const Options& options, const Calibration& calibration)
 {
-    const size_t cameras = calibration.cameras.size(), images = options.images.size();
-    if (options.points.empty() == (images == 0))
+    const size_t cameras = calibration.cameras.size(), images = options.files.images.size();
+    if (options.files.points.empty() == (images == 0))
         throw Failure("give images of the target, or --points=FILE");
-    if (!options.points.empty() && options.target.given())
+    if (!options.files.points.empty() && options.target.given())
         throw Failure("--points are those of no target: leave --size and --square, or --target, out");
-    if (!options.origin.yFrom.empty() && options.points.empty() && options.target.dots.empty())
+    if (!options.files.origin.yFrom.empty() && options.files.points.empty() && options.target.dots.empty())
         throw Failure("--y-from is of tables of pixels: add --points=FILE, or --target=FILE of dots that they are of");
     if (images > cameras)
-        throw Failure(format("'%s' has %s camera%s, but there are images of %s: calibrate ", options.calibration.c_str(),
+        throw Failure(format("'%s' has %s camera%s, but there are images of %s: calibrate ", options.files.calibration.c_str(),
                              cameras == 1 ? "one" : std::to_string(cameras).c_str(), cameras == 1 ? "" : "s",
                              images == 2 ? "two" : std::to_string(images).c_str())
                       + (images == 2 ? "the pair (refract_calib --direct2 --glass2), or give one image"
                                      : "them together (refract_calib --glass2 --glass3 ...), or give as many as it has"));
     if (!options.plane.empty() && images > 1)
         throw Failure("--plane is for one camera: leave it out, or give one image");
-    if (options.plane.empty() && !options.points.empty() && cameras == 1)
+    if (options.plane.empty() && !options.files.points.empty() && cameras == 1)
         throw Failure("--points of one camera need --plane=a,b,c,d, on which they lie");
-    if (images > 0 && options.images[0].empty() && !options.triangulates())
+    if (images > 0 && options.files.images[0].empty() && !options.triangulates())
         throw Failure("an empty name in place of the images of camera 1: with one camera there must be some");
-    if (options.points.empty() && !options.target.given())
-        for (const std::string& image : options.images)
+    if (options.files.points.empty() && !options.target.given())
+        for (const std::string& image : options.files.images)
             if (!image.empty() && fs::path(image).extension() != ".csv")
                 throw Failure("which target is in '" + image + "'? Give --size and --square, --target=FILE of dots, or --points=FILE "
                               "for other points");
@@ -524,19 +306,20 @@ int refract_measure_main(int argc, char** argv)
         std::unique_ptr<const Target> target;
         if (options.target.given())
             target = std::make_unique<Target>(options.target);
-        const Calibration asCalibrated = readCalibration(options.calibration);
-        requireWindows(asCalibrated, options.calibration, options.noWindow);
-        warnOfContradictions(asCalibrated, options.calibration, command);
-        const Calibration calibration = options.conditions.appliedTo(asCalibrated, options.calibration);
+        const Calibration asCalibrated = readCalibration(options.files.calibration);
+        requireWindows(asCalibrated, options.files.calibration, options.noWindow);
+        warnOfContradictions(asCalibrated, options.files.calibration, command);
+        const Calibration calibration = options.conditions.appliedTo(asCalibrated, options.files.calibration);
         if (target)
             requireSameUnit(calibration, target->square(), options.unit);
         checkCombination(options, calibration);
-        std::vector<std::string> inputs = {options.calibration, options.points, options.target.dots, command.settings()};
-        inputs.insert(inputs.end(), options.images.begin(), options.images.end());
+        std::vector<std::string> inputs = {options.files.calibration, options.files.points, options.target.dots, command.settings()};
+        inputs.insert(inputs.end(), options.files.images.begin(), options.files.images.end());
         inputs.insert(inputs.end(), options.compareWith.begin(), options.compareWith.end());
         checkOutputs({{"--out", options.out, OUTPUT_TEXT}}, inputs);
         const std::vector<Calibration> others = readOthers(options, calibration);
-        const std::vector<MeasuredView> measured = readMeasuredViews(options, calibration, target.get(), command);
+        const std::vector<MeasuredView> measured = readMeasuredViews(options.files, options.triangulates(), calibration, target.get(),
+                                                                     command);
         std::vector<Measurement> results = measureAll(options, calibration, measured);
         checkMeasurements(options, calibration, results);
         const std::string contradiction = contradictionIn(measured, results), outside = outsideImages(calibration, measured, results);
@@ -555,14 +338,16 @@ int refract_measure_main(int argc, char** argv)
             if (!text.empty())
                 command.warn(text);
         const std::string lengths = options.lengthsMeasured()
-            ? wrongLengths(options, target->square(), calibration, measured, results) : "";
+            ? wrongLengths(target->square(), calibration, measured, results, pixelSigma(options, calibration), planeOf(options)) : "";
         if (!lengths.empty())
             command.warn(lengths);
         const bool isDoubtful = mostContradict(results) || !lengths.empty();
         const std::string cause = isDoubtful ? causeOf(options, calibration, measured) : "";
         if (!cause.empty())
             command.warn("what explains them: " + cause);
-        warnNoisier(options, calibration, measured, results, command);
+        const std::string noisier = noisierImages(measured, results, pixelSigma(options, calibration));
+        if (!noisier.empty())
+            command.warn(noisier);
         sayUncovered(options, asCalibrated, command);
         if (!options.out.empty())
             writeText(options.out, csvOf(measured, results, calibration.cameras.size()));

@@ -1,0 +1,105 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#include "measure/measured_doubts.hpp"
+#include "calibrate/given_std.hpp"
+#include "console/table.hpp"
+#include "console/view_names.hpp"
+#include "measure/length_scale.hpp"
+#include "measure/outside_image.hpp"
+#include <algorithm>
+#include <cmath>
+
+namespace tools {
+
+std::string contradictionIn(const std::vector<MeasuredView>& measured, const std::vector<Measurement>& results)
+{
+    std::vector<std::string> names;
+    int points = 0, all = 0, nowhere = 0;
+    double worst = 0;
+    for (size_t i = 0; i < results.size(); i++)
+    {
+        const Measurement& m = results[i];
+        all += (int)m.points.size();
+        if (!m.inconsistent())
+            continue;
+        names.push_back(measured[i].stem);
+        points += m.inconsistent();
+        for (size_t k = 0; k < m.points.size(); k++)
+            nowhere += m.status[k] == INCONSISTENT && m.points[k].x != m.points[k].x;
+        worst = std::max(worst, m.worstResidual);
+    }
+    if (names.empty())
+        return "";
+    const bool pairs = results[0].pixels.size() == 2, rig = results[0].pixels.size() > 1;
+    const std::string left = pairs ? "the two pixels of a point miss each other by up to %.3g px"
+                             : rig ? "the pixels of a point miss each other by up to %.3g px RMS per coordinate"
+                                   : "the pose leaves residuals of up to %.3g px per coordinate";
+    return format("%d of %d points contradict themselves by far more than the noise: ", points, all)
+        + format(left.c_str(), pairs ? std::sqrt(2.)*worst : worst) + " (" + listed(names) + "; status 9"
+        + (nowhere == points ? ", no answer" : nowhere ? format(", %d of them without answer", nowhere)
+           : rig ? ", large sx, sy, sz" : ", no sx, sy, sz")
+        + "). "
+        + (rig ? std::string("Check that ") + (pairs ? "left and right are not swapped, that the images of a pair"
+                                                     : "the cameras are in the calibration's order, that images of one name")
+                 + " are of one moment, and that no camera and no window has moved since the calibration"
+                 : "Check --size, --square, that the target is flat, and that camera and window are those of the calibration");
+}
+
+std::string outsideImages(const Calibration& calibration, const std::vector<MeasuredView>& measured,
+                          const std::vector<Measurement>& results)
+{
+    for (size_t i = 0; i < results.size(); i++)
+    {
+        const std::string text = outsideIn(calibration, results[i], measured[i].ids);
+        if (!text.empty())
+            return (results.size() > 1 ? "'" + measured[i].stem + "': " : "") + text;
+    }
+    return "";
+}
+
+bool mostContradict(const std::vector<Measurement>& results)
+{
+    int all = 0, wrong = 0;
+    for (const Measurement& m : results)
+    {
+        all += m.seenPoints();
+        wrong += m.contradicting() + (int)std::count(m.status.begin(), m.status.end(), OUTSIDE_IMAGE);
+    }
+    return 2*wrong > all;
+}
+
+std::string wrongLengths(double square, const Calibration& calibration, const std::vector<MeasuredView>& measured,
+                         const std::vector<Measurement>& results, double pixelSigma, const std::optional<cv::Vec4d>& plane)
+{
+    const double FAR_OFF = 0.2, CONTRADICTING = 5.;     // of a plane, whose error is not said; standard deviations, as those of a point
+    const LengthScale scale = lengthScaleOf(calibration, {measured.begin(), measured.end()}, results, pixelSigma,
+                                            USUAL_SQUARE_STD, plane);
+    const bool isFar = std::abs(scale.ratio - 1.) > FAR_OFF, contradicts = !plane && scale.deviations() > CONTRADICTING;
+    if (!isFar && !contradicts)
+        return "";
+    return format("the distances between neighbouring points are on average %.*g times those of the target", isFar ? 3 : 6, scale.ratio)
+        + (contradicts ? format(", %.3g standard deviations of noise, calibration and a printed board from 1", scale.deviations())
+                       : std::string())
+        + format(": is --square=%g right, in the unit of the calibration, and are ", square)
+        + (isFar ? "images and calibration of the same cameras?" : "cameras and windows where they were when they were calibrated?");
+}
+
+std::string noisierImages(const std::vector<MeasuredView>& measured, const std::vector<Measurement>& results, double pixelSigma)
+{
+    const double FEW = 3.;
+    std::vector<std::string> names;
+    double worst = 0;
+    for (size_t i = 0; i < results.size(); i++)
+        if (!results[i].inconsistent() && results[i].noise > FEW*pixelSigma)
+        {
+            names.push_back(measured[i].stem);
+            worst = std::max(worst, results[i].noise);
+        }
+    if (names.empty())
+        return "";
+    return format("the pixels are noisier than in the calibration: up to %.3g px per coordinate instead of %.3g px, in ", worst, pixelSigma)
+        + listed(names) + "; sx, sy, sz include this. Check focus, light, motion, and the target";
+}
+
+} // namespace tools
