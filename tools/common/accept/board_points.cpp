@@ -2,28 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "accept/board_points.hpp"
-#include "calibrate/rig_data.hpp"
 #include "console/failure.hpp"
 #include "measure/consistency.hpp"
+#include "measure/measured_views.hpp"
 #include "measure/measurement.hpp"
 #include "measure/outside_image.hpp"
-#include <algorithm>
 
 namespace tools {
 
 namespace {
-
-//! One image for each camera is one view, whatever their names.
-void nameSingles(RigImages& sets)
-{
-    std::string name;
-    for (const DetectedImages& set : sets.glass)
-        if (set.files.size() > 1 || set.images.size() > 1)
-            return;
-    for (DetectedImages& set : sets.glass)
-        for (DetectedImage& image : set.images)
-            image.stem = name = name.empty() ? image.stem : name;
-}
 
 void add(const View& view, const Measurement& m, TestPoints& points)
 {
@@ -41,14 +28,9 @@ void add(const View& view, const Measurement& m, TestPoints& points)
 BoardPoints measureBoards(const Calibration& calibration, const std::vector<std::string>& images, const Target& target, double pixelSigma,
                           bool quiet)
 {
-    RigSources sources;
-    sources.channel = calibration.channel;
-    std::copy(images.begin(), images.end(), sources.glass.begin());
-    PerCamera<cv::Size> sizes;
-    for (size_t c = 0; c < calibration.cameras.size(); c++)
-        sizes[c] = calibration.cameras[c].camera->imageSize();
-    RigImages sets = readRigImages(sources, &target, sizes, quiet);
-    nameSingles(sets);
+    MeasuredFiles files;
+    files.images = images;
+    const RigImages sets = readGlassImages(files, true, calibration, &target, quiet);
     BoardPoints result;
     result.points.source = images[0];
     result.points.havePixels = result.points.haveSigma = true;
