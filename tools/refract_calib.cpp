@@ -59,17 +59,12 @@ value. A PASS that is not the whole truth says so: "PASS; look at the weak point
 The same input gives the same bytes: outputs carry the time of the newest image (or that of SOURCE_DATE_EPOCH).)";
 
 #include "assess/calibrate_images.hpp"
-#include "assess/live_limits.hpp"
-#include "calibrate/data_checks.hpp"
-#include "calibrate/few_points.hpp"
-#include "calibrate/given_places.hpp"
-#include "calibrate/given_window.hpp"
+#include "assess/given_images.hpp"
+#include "calibrate/given_rig.hpp"
 #include "calibrate/image_fit.hpp"
 #include "calibrate/lens_choice.hpp"
-#include "calibrate/live_rig.hpp"
 #include "calibrate/pinhole_camera.hpp"
 #include "calibrate/pinhole_rig.hpp"
-#include "calibrate/poses_file.hpp"
 #include "calibrate/units.hpp"
 #include "calibrate/window_face.hpp"
 #include "console/cli.hpp"
@@ -85,7 +80,6 @@ The same input gives the same bytes: outputs carry the time of the newest image 
 #include "report/report.hpp"
 #include "report/summary.hpp"
 #include "report/summary_json.hpp"
-#include "report/thumbnails.hpp"
 #include <cmath>
 #include <set>
 #include <iostream>
@@ -100,21 +94,14 @@ namespace {
 struct Options
 {
     TargetOptions target;
-    RigSources images;
-    WatchOptions watch;
+    GivenImages images;
     PerCamera<std::string> camera;
-    GivenWindowOptions window;
-    std::string imageSize, windowOfCamera, poses, out, summary, report, pinholeOut, lens = "auto";
+    GivenRigOptions given;
+    std::string out, summary, report, pinholeOut, lens = "auto";
     std::string channel;
-    double watchGain = 0.;
-    GivenStdOptions std;
-    GivenPlaces places;
-    std::vector<std::string> free;
-    bool unpaired = false, sharedWindow = false;
     bool crossValidation = true, robust = true;
     Limits limits;
     Label label;
-    std::string unit = "mm";
     bool verbose = false;
 };
 
@@ -150,12 +137,12 @@ Options parseOptions(Command& command)
     OptionParser& parser = command.parser;
     o.target.addTo(parser, false);
     o.target.addDotsTo(parser);
-    addYFrom(parser, o.images.yFrom).needs(parser.get("--target"));
-    o.images.addTo(parser, "images through the window: glob, corners.vnl or points.csv", "images without the window: the same");
-    o.watch.addTo(parser);
+    addYFrom(parser, o.images.sources.yFrom).needs(parser.get("--target"));
+    o.images.sources.addTo(parser, "images through the window: glob, corners.vnl or points.csv", "images without the window: the same");
+    o.images.watch.addTo(parser);
     parser.get("--view-pattern").excludes(parser.get("--watch"));
-    parser.add("--watch-gain", o.watchGain, "end when the best next pair would take off less than so many percent of the calibration's "
-        "part of a point's error").needs(parser.get("--watch")).check(moreThanZero());
+    parser.add("--watch-gain", o.images.watchGain, "end when the best next pair would take off less than so many percent of the "
+        "calibration's part of a point's error").needs(parser.get("--watch")).check(moreThanZero());
     Option glass2 = parser.get("--glass2");
     for (int c = 0; c < MAX_CAMERAS; c++)
     {
@@ -170,23 +157,23 @@ Options parseOptions(Command& command)
     parser.add("--lens", o.lens, "lens model that the images determine: OpenCV's with that many coefficients, "
                "cv::fisheye's four, or auto: as many as held-out images support").check(isMember(lensNames()))
         .captureDefault();
-    o.window.addTo(parser, "where it is needed and not given, it is estimated");
-    o.std.addTo(parser);
-    o.places.addTo(parser);
+    o.given.window.addTo(parser, "where it is needed and not given, it is estimated");
+    o.given.std.addTo(parser);
+    o.given.places.addTo(parser);
     parser.add("--channel", o.channel, "of colour images, in which the target is looked for, and for which the calibration is "
         "valid (default: the brightness of all)").check(isMember({"red", "green", "blue"}));
-    parser.add("--free", o.free, "what to estimate beside the normal, or the centre").delimiter(',')
+    parser.add("--free", o.given.free, "what to estimate beside the normal, or the centre").delimiter(',')
         .check(isMember(namesOf(freeFlags())));
-    parser.add("--image-size", o.imageSize, "WxH; needed for corners.vnl and points.csv, otherwise checked");
-    Option unpaired = parser.addFlag("--unpaired", o.unpaired, "equal names are no pairs (a hand-held board)");
+    parser.add("--image-size", o.images.imageSize, "WxH; needed for corners.vnl and points.csv, otherwise checked");
+    Option unpaired = parser.addFlag("--unpaired", o.images.unpaired, "equal names are no pairs (a hand-held board)");
     parser.addFlag("--partial", o.target.partial, "a chessboard that may be partly out of view, or is cut at its edge: any piece "
         "of it will do; --size counts all corners of the whole board, the outermost found ones are left out")
         .needs(unpaired).excludes(glass2);
-    Option shared = parser.addFlag("--shared-window", o.sharedWindow, "all cameras look through the same pane")
+    Option shared = parser.addFlag("--shared-window", o.given.sharedWindow, "all cameras look through the same pane")
         .needs(glass2);
-    parser.add("--window-of-camera", o.windowOfCamera, "which window each camera looks through, as 1,1,2,2; equal numbers share "
+    parser.add("--window-of-camera", o.given.windowOfCamera, "which window each camera looks through, as 1,1,2,2; equal numbers share "
         "one pane (default: each has its own)").needs(glass2).excludes(shared);
-    parser.add("--poses", o.poses, "known poses of the target in camera 1: poses.csv").excludes(unpaired);
+    parser.add("--poses", o.images.poses, "known poses of the target in camera 1: poses.csv").excludes(unpaired);
     parser.add("--out", o.out, "the calibration to write (.yml, .xml, .json)").required();
     parser.add("--summary", o.summary, "JSON file with everything that the table and the report say");
     parser.add("--report", o.report, "HTML page to assess the calibration by, and to keep (needs gnuplot)");
@@ -201,7 +188,7 @@ Options parseOptions(Command& command)
         "do not calibrate again on parts of the views");
     parser.addNegation("--no-robust", o.robust, "use all points as they are; by default wrong points and "
         "images (dirt, wrong detections, a board that moved within its pair) are left out, and named");
-    parser.add("--unit", o.unit, "unit of --square and all lengths").check(isMember(unitNames()))
+    parser.add("--unit", o.given.unit, "unit of --square and all lengths").check(isMember(unitNames()))
         .captureDefault();
     parser.add("--serial", o.label.serial, "serial number of the window, carried into all outputs");
     parser.add("--note", notes, "repeatable: KEY=TEXT, carried into all outputs").oneAtATime();
@@ -219,29 +206,14 @@ Options parseOptions(Command& command)
     }
     const auto isGiven = [](const std::string& file) { return !file.empty(); };
     if (parser.get("--lens").count() > 0
-        && std::all_of(o.camera.begin(), o.camera.begin() + o.images.cameraCount(), isGiven))
+        && std::all_of(o.camera.begin(), o.camera.begin() + o.images.sources.cameraCount(), isGiven))
         throw Failure("--lens=" + o.lens + " is for a lens that the images determine; these are those of --camera: leave one out");
-    o.images.channel = channelOf(o.channel);
-    for (int c = 0; c < o.images.cameraCount(); c++)
-        if (o.images.glass[c].empty())
+    o.images.sources.channel = channelOf(o.channel);
+    for (int c = 0; c < o.images.sources.cameraCount(); c++)
+        if (o.images.sources.glass[c].empty())
             throw Failure(format("--glass%d is given, but no --glass%d: number the cameras 1, 2, 3, ... without a gap",
-                                 o.images.cameraCount(), c + 1));
+                                 o.images.sources.cameraCount(), c + 1));
     return o;
-}
-
-const double LEAST_SOLID = 1.36;        // no solid that windows are made of has less; water has 1.333
-
-//! A liquid that was given as a layer: it stays where it is only between two others.
-void noticeLiquidLayers(const Options& o, const RigOptions& rig, std::vector<std::string>& notices)
-{
-    for (size_t i : {(size_t)0, rig.window.index.size() - 1})
-        if (!rig.window.index.empty() && rig.window.index[i] < LEAST_SOLID)
-        {
-            notices.push_back("--index=" + o.window.index() + format(": the %s has the index %.4g, as a liquid: no window is made of that. "
-                              "The medium behind the window is --outer-index, a bare surface has no --thickness and no --index",
-                              rig.window.index.size() == 1 ? "window" : i ? "outermost layer" : "innermost layer", rig.window.index[i]));
-            return;
-        }
 }
 
 //! A lens that was given for two cameras may be a slip, and lenses of one kind differ by more than their +-.
@@ -259,155 +231,23 @@ void noticeSharedLens(const Options& o, std::vector<std::string>& notices)
     }
 }
 
-//! Which window each camera looks through; empty: each has its own.
-std::vector<int> readWindowsOfCameras(const Options& o)
-{
-    const int cameras = o.images.cameraCount();
-    if (o.sharedWindow)
-        return std::vector<int>(cameras, 0);
-    if (o.windowOfCamera.empty())
-        return {};
-    std::vector<int> windows;
-    for (double number : parseNumbers(o.windowOfCamera, "--window-of-camera"))
-    {
-        if (number != std::floor(number) || std::abs(number) > 1e6)
-            throw Failure("--window-of-camera=" + o.windowOfCamera + ": give whole numbers, as 1,1,2,2");
-        windows.push_back((int)number);
-    }
-    if ((int)windows.size() != cameras)
-        throw Failure(format("--window-of-camera=%s has %zu numbers, but there are %d cameras: give one for each",
-                             o.windowOfCamera.c_str(), windows.size(), cameras));
-    return windows;
-}
-
-bool isDistanceKnown(const Options& o) { return o.window.isDistanceSaid() || o.places.areOfMarkers(); }
-
-//! Standard deviations of what is given.
-void takeStd(const Options& o, const Target* target, RigOptions& rig)
-{
-    GivenValues given;
-    given.layers = rig.layers;
-    given.outer = rig.outer;
-    given.equalMedia = !hasDifferentMedia(rig.window);
-    given.distance = isDistanceKnown(o);
-    given.shape = rig.window.shape;
-    given.square = target ? target->square() : 0.;
-    given.millimetre = 1./millimetresIn(o.unit);
-    given.flags = rig.flags;
-    rig.std = o.std.of(given);
-    rig.std.normal = o.places.normalStd();
-    o.window.requireBow(rig.std, rig.flags);
-    rig.window = withEstimated(rig.window, rig.std, rig.flags);
-    const std::set<int> windows(rig.windows.begin(), rig.windows.end());
-    if (rig.window.shape == WINDOW_BENT && !rig.window.wedge.empty() && windows.size() < rig.windows.size())
-        throw Failure("a bent window that several cameras share cannot have a wedge, too, as its faces would have no common centre: say "
-                      "--wedge-std=0 (and no --free=wedge), or leave --bow-std out");
-}
-
-void takePlaces(const Options& o, RigOptions& rig)
-{
-    const std::string option = o.places.option();
-    if (o.places.isSaid() && isRound(rig.window))
-        throw Failure(option + " is of a flat window; where a " + o.window.shape() + " is, --center says, with --center-std");
-    if (o.places.areOfMarkers() && rig.flags & GLASS_FREE_DISTANCE)
-        throw Failure("--free=distance says that the images alone tell the distance, and --pane-points what is known of it: leave one out");
-    rig.places = o.places.of(o.images.cameraCount(), rig.windows);
-    rig.placeOption = option;
-}
-
-//! The window as far as it is known, and what is to be found; refuses what no image can tell.
-void readWindow(const Options& o, RigOptions& rig)
-{
-    for (const std::string& name : o.free)
-        rig.flags |= freeFlags().at(name);
-    const GivenWindow given = o.window.of(rig.flags, o.images.channel);
-    rig.window = given.window;
-    rig.layers = given.layers;
-    rig.inner = given.inner;
-    rig.outer = given.outer;
-    rig.channel = o.images.channel;
-    if (isRound(rig.window) && o.limits.normalStdDeg > 0.)
-        throw Failure("--max-normal-std is of a flat window, and a " + o.window.shape() + " has no normal: limit the error of points, "
-                      "--max-error-at");
-    rig.windows = readWindowsOfCameras(o);
-    takePlaces(o, rig);
-    if (!o.poses.empty())
-        rig.flags |= GLASS_USE_POSES;
-    if (hasDifferentMedia(rig.window) && !isDistanceKnown(o) && !isRound(rig.window))
-        rig.flags |= GLASS_FREE_DISTANCE;
-}
-
-//! Into the place of sources that are not to be read.
-void putWatched(const RigImages& watched, const RigSources& left, RigImages& sets)
-{
-    for (int k = 0; k < MAX_CAMERAS; k++)
-    {
-        if (left.direct[k].empty())
-            sets.direct[k] = watched.direct[k];
-        if (left.glass[k].empty())
-            sets.glass[k] = watched.glass[k];
-    }
-}
-
-//! Those that were watched are there already.
-RigImages readImages(const Options& o, const RigOptions& rig, const Target* target, bool quiet, const RigImages& watched,
-                     const RigSources& left)
-{
-    PerCamera<cv::Size> sizes;
-    for (int k = 0; k < MAX_CAMERAS; k++)
-        sizes[k] = !o.imageSize.empty() ? parseSize(o.imageSize, "--image-size") : rig.known[k] ? rig.known[k]->imageSize() : cv::Size();
-    for (int k = 0; k < MAX_CAMERAS; k++)
-        for (const DetectedImages* set : {&watched.direct[k], &watched.glass[k]})
-            if (!set->files.empty())
-                sizes[k] = set->imageSize;
-    if (!o.unpaired)
-        requirePairNames(left);
-    RigImages sets = readRigImages(left, target, sizes, quiet);
-    putWatched(watched, left, sets);
-    return sets;
-}
-
-//! From images to views.
-void takeImages(const Options& o, const Target* target, RigImages sets, RigCalibration& c)
-{
-    for (const DetectedImages* set : sets.all())
-    {
-        c.withoutTarget.insert(c.withoutTarget.end(), set->withoutTarget.begin(), set->withoutTarget.end());
-        c.inputs.insert(c.inputs.end(), set->files.begin(), set->files.end());
-    }
-    if (!o.unpaired)
-        requirePairs(sets);
-    c.photos = photosOf(sets);
-    c.used = usedImages(sets);
-    c.fewPoints = leaveOutFewPoints(target, sets);
-    c.data = groupIntoViews(target, sets, o.unpaired);
-    if (!o.poses.empty())
-    {
-        readPoses(o.poses, o.unit, c.data);
-        c.inputs.push_back(o.poses);
-    }
-    c.notices = noticesOf(sets, c.data);
-    noticeLiquidLayers(o, c.options, c.notices);
-    noticeSharedLens(o, c.notices);
-    if (!o.window.isDistanceSaid() && c.options.flags & GLASS_FREE_DISTANCE)
-        c.options.window.distance = startDistance(c.data, c.square);
-}
-
 //! All that is known before the images.
 RigCalibration prepare(const Options& o, const Target* target)
 {
     RigCalibration c;
     if (!o.target.dots.empty())
         c.inputs.push_back(o.target.dots);
-    readWindow(o, c.options);
+    c.square = target ? target->square() : 0.;
+    c.options = o.given.of(o.images.sources.cameraCount(), o.images.sources.channel, !o.images.poses.empty(), c.square);
+    if (isRound(c.options.window) && o.limits.normalStdDeg > 0.)
+        throw Failure("--max-normal-std is of a flat window, and a " + o.given.window.shape() + " has no normal: limit the error of "
+                      "points, --max-error-at");
     if (o.lens != "auto")
         c.options.lensCoefficients = pinholeLenses().at(o.lens).coefficients;
-    takeStd(o, target, c.options);
-    c.inputs.insert(c.inputs.end(), o.places.files().begin(), o.places.files().end());
+    c.inputs.insert(c.inputs.end(), o.given.places.files().begin(), o.given.places.files().end());
     c.limits = o.limits;
     c.label = o.label;
-    c.unit = o.unit;
-    c.square = target ? target->square() : 0.;
+    c.unit = o.given.unit;
     c.crossValidated = o.crossValidation;
     for (int k = 0; k < MAX_CAMERAS; k++)
         if (!o.camera[k].empty())
@@ -422,48 +262,17 @@ RigCalibration prepare(const Options& o, const Target* target)
     return c;
 }
 
-//! Until the images are there. @param left gets what is still to be read
-RigImages watch(const Options& o, const Target* target, const RigCalibration& prepared, bool quiet, RigSources& left)
-{
-    if (!target || target->pattern() == Target::DOTS)
-        throw Failure("--watch looks for a board: give --size and --square");
-    WatchedRig rig = {o.images, *target, o.unpaired, nullptr};
-    const bool isAsked = o.limits.normalStdDeg > 0 || !o.limits.errors.empty() || o.watchGain > 0;
-    RigImages others;                   // that are not watched, read when they are needed first
-    bool read = false;
-    if (isAsked)
-        rig.assess = [&](const RigImages& came) {
-            RigCalibration c = prepared;
-            try
-            {
-                if (!read)
-                    others = readImages(o, c.options, target, quiet, {}, left);
-                read = true;
-                RigImages sets = others;
-                putWatched(came, left, sets);
-                takeImages(o, target, sets, c);
-            }
-            catch (const std::exception&)       // said at the end, if it is still so
-            {
-                return Progressed();
-            }
-            return progressOf(c, 0.01*o.watchGain);
-        };
-    std::ostream nowhere(nullptr);
-    return watchRig(o.watch, rig, left, quiet ? nowhere : std::cout);
-}
-
 RigCalibration calibrate(const Options& o, bool quiet)
 {
     std::unique_ptr<const Target> target;
     if (o.target.given())
         target = std::make_unique<Target>(o.target);
     RigCalibration c = prepare(o, target.get());
-    RigSources left = o.images;
-    RigImages watched;
-    if (o.watch.given)
-        watched = watch(o, target.get(), c, quiet, left);
-    takeImages(o, target.get(), readImages(o, c.options, target.get(), quiet, watched, left), c);
+    o.images.read(target.get(), o.given.window.isDistanceSaid(), quiet, c);
+    const std::string liquid = o.given.noticeOfLiquid(c.options.window);
+    if (!liquid.empty())
+        c.notices.push_back(liquid);
+    noticeSharedLens(o, c.notices);
     if (o.lens == "auto")
         c.lens = chooseLens(c.data, c.options, o.robust);
     if (!c.lens.scores.empty())
@@ -485,10 +294,10 @@ void checkOutputs(const Options& o, const std::string& settings)
 {
     if (!o.report.empty())
         Plot::checkAvailable();
-    std::vector<std::string> inputs = o.images.all();
+    std::vector<std::string> inputs = o.images.sources.all();
     inputs.insert(inputs.end(), o.camera.begin(), o.camera.end());
-    inputs.insert(inputs.end(), {o.poses, o.target.dots, settings});
-    inputs.insert(inputs.end(), o.places.files().begin(), o.places.files().end());
+    inputs.insert(inputs.end(), {o.images.poses, o.target.dots, settings});
+    inputs.insert(inputs.end(), o.given.places.files().begin(), o.given.places.files().end());
     tools::checkOutputs({{"--out", o.out, OUTPUT_CALIBRATION}, {"--summary", o.summary, OUTPUT_TEXT},
                          {"--report", o.report, OUTPUT_TEXT}, {"--pinhole-out", o.pinholeOut, OUTPUT_CALIBRATION}},
                         inputs);

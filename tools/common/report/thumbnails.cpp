@@ -102,24 +102,6 @@ double concernOf(const RigCalibration& c, const Photo& photo)
 
 } // namespace
 
-std::vector<Photo> photosOf(const RigImages& sets)
-{
-    std::vector<Photo> photos;
-    for (int c = 0; c < MAX_CAMERAS; c++)
-        for (bool glass : {false, true})
-        {
-            const DetectedImages& set = (glass ? sets.glass : sets.direct)[c];
-            if (set.files.size() == 1 && isPointFile(set.files[0]))
-                continue;
-            for (const DetectedImage& image : set.images)
-                photos.push_back({image.path, image.stem, c, glass, image.points});
-            for (const std::string& path : set.withoutTarget)
-                photos.push_back({path, stemOf(path), c, glass, {}});
-        }
-    std::stable_sort(photos.begin(), photos.end(), [](const Photo& a, const Photo& b) { return a.stem < b.stem; });
-    return photos;
-}
-
 std::vector<PhotoScale> photoScale(const RigCalibration& c)
 {
     std::vector<PhotoScale> scale;

@@ -17,9 +17,6 @@ struct Thumbnail
     bool suspect;               //!< no target found, or points left out
 };
 
-//! The images that the views of the sets came from; none for corners that came from a file.
-std::vector<Photo> photosOf(const RigImages& sets);
-
 //! Colours of points in CSS, and how far these lie from where the calibration puts them, in words.
 struct PhotoScale
 {
