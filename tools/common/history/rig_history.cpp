@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "history/rig_history.hpp"
+#include "console/lines.hpp"
 #include "console/table.hpp"
 #include <cmath>
 
@@ -75,12 +76,10 @@ HistoryResult chartHistory(const CheckHistory& history, const MatrixXd& covarian
 std::string causesIn(const HistoryResult& result, const CheckHistory& history)
 {
     const size_t MOST = 3;
-    std::string text;
-    for (size_t i = 0; i < std::min(MOST, result.causes.size()); i++)
-        text += (i ? "; or " : "") + sentenceOf(result.causes[i], history);
-    if (result.causes.size() > MOST)
-        text += cv::format("; or one of %zu others", result.causes.size() - MOST);
-    return text;
+    std::vector<std::string> sentences;
+    for (const DriftCause& cause : result.causes)
+        sentences.push_back(sentenceOf(cause, history));
+    return alternatives(sentences, MOST);
 }
 
 std::string foundText(const FoundDrift& found, const CheckHistory& history, double interval)
