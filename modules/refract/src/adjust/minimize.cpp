@@ -110,7 +110,7 @@ private:
     bool touchesTarget(int block) const;
     bool isHeldAtTarget(int block) const;
     bool retreat(int block);
-    bool isAtMinimum();
+    bool isAtMinimum(double negligible);
     Problem& problem_;
     std::unique_ptr<ReducedCost> cost_;     //!< of what is not held
     int iterations_ = 0;
@@ -302,15 +302,15 @@ bool Minimization::holdAtBounds()
     return changed;
 }
 
-//! The step that is left is far below the uncertainty of what it would move, or what is not seen.
-bool Minimization::isAtMinimum()
+/** The step that is left is far below the uncertainty of what it would move, or what is not seen.
+@param negligible standard deviations */
+bool Minimization::isAtMinimum(double negligible)
 {
-    const double NEGLIGIBLE = 1e-3;     // standard deviations
     const double LEAST_SIGMA = problem_.hasScene() ? 1e-3 : 1e-6;   // px: perfect data end in rounding errors
     const double variance = problem_.freedom() > 0 ? problem_.squaredError()/problem_.freedom() : 0;
     const double decrement = newtonDecrement(cost_->rootedInformation()), unseen = problem_.hasScene() ?
         DampedSteps::unseenOf(problem_.squaredError(), problem_.equationCount(), roundingOfPixels(problem_)) : 0;
-    return decrement < NEGLIGIBLE*std::max(std::sqrt(variance), LEAST_SIGMA) || decrement*decrement < unseen;
+    return decrement < negligible*std::max(std::sqrt(variance), LEAST_SIGMA) || decrement*decrement < unseen;
 }
 
 /** Along curved valleys (distance against focal length) the steps of Levenberg and Marquardt creep, near the edge of the
@@ -319,6 +319,7 @@ asked for; of a scene, whose turns by the dogleg are dear, of the same steps fir
 FitOutcome Minimization::run(const TermCriteria& criteria, double& damping, double leastGain)
 {
     const int ITERATIONS_BETWEEN = 20;
+    const double NEGLIGIBLE = 1e-3, NEGLIGIBLE_BY_ROUNDING = 1e-2;
     const bool stopsByChange = (criteria.type & TermCriteria::EPS) != 0;
     const double change = stopsByChange ? criteria.epsilon : 0., radius = 1/FIRST_DAMPING;
     const double STRICTER = 1e-2;
@@ -341,7 +342,7 @@ FitOutcome Minimization::run(const TermCriteria& criteria, double& damping, doub
         iterations_ += region.iterations;
         CV_LOG_INFO(NULL, "refract: " << (turn ? "dogleg" : "Levenberg-Marquardt") << " to " << problem_.squaredError() << ", "
                      << region.iterations << " iterations");
-        if (region.outcome == ceres::CONVERGENCE && !isHeldAnew && (region.leastGain > 0 || isAtMinimum()))
+        if (region.outcome == ceres::CONVERGENCE && !isHeldAnew && (region.leastGain > 0 || isAtMinimum(NEGLIGIBLE)))
             return FitOutcome();
         idle = region.iterations > 1 ? 0 : idle + 1;
         isAgain = problem_.hasScene() && turn == 0 && !isAgain && region.outcome == ceres::CONVERGENCE && !isHeldAnew;
@@ -356,10 +357,14 @@ FitOutcome Minimization::run(const TermCriteria& criteria, double& damping, doub
     // A caller who asks for a number of iterations only gets them; one who asks for a change must not get less.
     if (!stopsByChange)
         return FitOutcome();
+    // Far from a scene's origin rounding ends the steps: no smaller one makes it better.
+    const bool isStuck = iterations_ < criteria.maxCount;
+    if (isStuck && cost_ && problem_.hasScene() && isAtMinimum(NEGLIGIBLE_BY_ROUNDING))
+        return FitOutcome();
     const double ALL_BUT_TOUCHES = 1e-3;
     FitOutcome outcome = problem_.findPointAtWindow(ALL_BUT_TOUCHES);
     outcome.status = FitOutcome::MAX_ITERATIONS;
-    outcome.isStuck = iterations_ < criteria.maxCount;
+    outcome.isStuck = isStuck;
     outcome.count = std::min(iterations_, criteria.maxCount);
     return outcome;
 }
