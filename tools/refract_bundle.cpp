@@ -81,7 +81,8 @@ struct Options
     PixelOrigin origin;
     SurveyOptions survey;
     double maxRms = 0., pixelSigma = 0.;
-    MayHaveTurned turned = {0., 0.};
+    std::vector<std::string> turned;        // degrees
+    double tilted = 0.;
     bool robust = true;
 
     bool isSurvey() const { return !survey.model.empty(); }
@@ -101,9 +102,9 @@ void addOptions(OptionParser& parser, Options& o)
     parser.add("--lengths", o.lengths, "known distances between points: [image,]id1,id2,length,std").excludes(wand);
     parser.add("--free", o.bundle.free, "what the matches alone must tell; none: nothing").delimiter(',')
         .check(isMember(freeNames()));
-    parser.add("--turned", o.turned.cameras, "of a rig that was calibrated: each camera may have turned about its own centre since, by so "
-        "many degrees, one standard deviation").check(moreThanZero());
-    parser.add("--tilted", o.turned.windows, "the same of each window").check(moreThanZero());
+    parser.add("--turned", o.turned, "of a rig that was calibrated: each camera may have turned about its own centre since, by so many "
+        "degrees, one standard deviation; 0,0.3: camera 2 alone").delimiter(',').check(notNegative());
+    parser.add("--tilted", o.tilted, "the same of each window").check(moreThanZero());
     o.bundle.window.addTo(parser, "needed where the medium on its other side is another");
     o.bundle.std.addTo(parser, false);
     o.bundle.places.addTo(parser);
@@ -130,12 +131,18 @@ void addOptions(OptionParser& parser, Options& o)
 BundleStart startWith(const Options& o, const BundleOptions& bundle, const Calibration& file)
 {
     BundleStart start = startOf(file, o.start, bundle);
-    if (!(o.turned.cameras > 0.) && !(o.turned.windows > 0.))
+    MayHaveTurned turned{{}, o.tilted};
+    for (const std::string& degrees : o.turned)
+        turned.cameras.push_back(std::stod(degrees));
+    if (turned.cameras.empty() && !(turned.windows > 0.))
         return start;
+    if (turned.cameras.size() > 1 && turned.cameras.size() != start.rig.cameras.size())
+        throw Failure(cv::format("--turned has %zu values, and '%s' has %zu cameras: one value for all, or one of each", turned.cameras.size(),
+                             o.start.c_str(), start.rig.cameras.size()));
     if (file.covariance.empty())
         throw Failure("--turned and --tilted are for a rig that was calibrated, and '" + o.start + "' has no covariance: free what is not "
                       "known (--free)");
-    start.covariance = covarianceOfMoved({start.rig, start.covariance, 0., 0.}, o.turned);
+    start.covariance = covarianceOfMoved({start.rig, start.covariance, 0., 0.}, turned);
     return start;
 }
 

@@ -55,6 +55,7 @@ void addOptions(OptionParser& parser, Options& o)
     addViewPattern(parser, o.viewPattern);
     parser.add("--depth", o.depth, "NEAR,FAR: z of the scene in the frame of camera 1; FAR may be inf");
     parser.add("--search", o.scene.search, "pixels from the epipolar curve within which partners are looked for").check(moreThanZero());
+    o.scene.count = 10000;          // what is calibrated again from them gains from more than a check does
     parser.add("--count", o.scene.count, "matches at most").check(isCount()).captureDefault();
     parser.add("--features", o.scene.features, "of OpenCV: SIFT is placed best, ORB is fastest").check(isMember(featureNames()))
         .captureDefault();

@@ -57,7 +57,7 @@ MatrixXd byChanges(const RigModel& rig, const Vec3d& middle, const std::function
 MatrixXd byTurns(const RigModel& rig, const MayHaveTurned& turned)
 {
     return byChanges(rig, Vec3d(0, 0, 1), [&](const Change& change) {
-        const double std = !isTurn(change) ? 0. : change.isTilt ? turned.windows : turned.cameras;
+        const double std = !isTurn(change) ? 0. : change.isTilt ? turned.windows : turned.ofCamera(change.turnedCamera());
         return VectorXd(VectorXd::Constant(change.size(), std*DEGREE)); });
 }
 
@@ -113,7 +113,7 @@ double searchWidth(const CheckInput& input, int first, int second, const Vec2d& 
     for (int i = 0; i < count; i++)
         all[i] = i;
     const ViewDerivatives view = differentiateView(input.rig, points, Vec3d(), Vec3d(), {{first, true, all}, {second, true, all}});
-    const MatrixXd D = byTurns(input.rig, {degrees, degrees});
+    const MatrixXd D = byTurns(input.rig, {{degrees}, degrees});
     const MatrixXd C = input.covariance.empty() ? MatrixXd(MatrixXd::Zero(D.rows(), D.rows())) : toEigen(input.covariance);
     double width = 0.;
     for (int i = 0; i < count; i++)

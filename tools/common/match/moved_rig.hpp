@@ -9,10 +9,13 @@
 /* What may have become of a rig since its calibration, and how far from their curves matches then are. */
 namespace tools {
 
-//! Standard deviations of what may have turned since, degrees.
+//! Standard deviations of what may have turned since, about its own centre, degrees.
 struct MayHaveTurned
 {
-    double cameras, windows;
+    std::vector<double> cameras;        //!< one for all, or one of each; empty: none has
+    double windows = 0.;
+
+    double ofCamera(int c) const { return cameras.empty() ? 0. : cameras[cameras.size() == 1 ? 0 : c]; }
 };
 
 /** The calibration's covariance, with every turn that the table of changes knows: of a camera about its own centre, of a window. */

@@ -220,7 +220,7 @@ std::vector<int> SceneMatcher::leaveOutWrong(ScaledMatches& scaled, const std::v
     const double depth = std::min(2.*options_.depth[0], 0.5*(options_.depth[0] + options_.depth[1]));
     const ScaledMatches some = scaled.only(spreadChoice(scaled, input_.rig, ENOUGH));
     // With less free, wrong matches bend it less.
-    BundleStart start{input_.rig, cv::refract::GLASS_FIX_NORMAL, covarianceOfMoved(input_, {MAY_HAVE_TURNED, MAY_HAVE_TURNED}), {}};
+    BundleStart start{input_.rig, cv::refract::GLASS_FIX_NORMAL, covarianceOfMoved(input_, {{MAY_HAVE_TURNED}, MAY_HAVE_TURNED}), {}};
     RigModel rig = adjustBundle(start, some.matches, {}, true).fit.rig;
     start.covariance = covarianceOfChanged(input_, depth, SHARE);
     std::vector<int> good;
