@@ -176,4 +176,10 @@ TEST_CASE("Seven lines of five lengths make a whole test; what is missing is sai
     Acceptance four = whole;                // a length twice is one
     four.lengths[1].length.length = four.lengths[0].length.length;
     CHECK_THAT(missingOf(four)[0], Catch::Contains("6 of 7 measuring lines"));
+    Acceptance reaching = whole;            // a smaller volume does not make a test whole by what is not in it
+    for (LengthResult& length : reaching.lengths)
+        length.outside = length.length.length > 0.5*diagonal;
+    REQUIRE(missingOf(reaching).size() == 2);
+    CHECK_THAT(missingOf(reaching)[0], Catch::Contains("0 of 7 measuring lines"));
+    CHECK_THAT(missingOf(reaching)[1], Catch::Contains("of the diagonal of the calibrated volume"));
 }

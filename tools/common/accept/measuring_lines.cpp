@@ -31,12 +31,13 @@ bool isOnLine(const Acceptance& a, size_t line, size_t length)
     return true;
 }
 
-//! Lengths that differ.
+//! Lengths that differ, in the volume.
 size_t countDistinct(const Acceptance& a, const MeasuringLine& line)
 {
     std::vector<double> lengths;
     for (size_t i : line)
-        lengths.push_back(a.lengths[i].length.length);
+        if (!a.lengths[i].outside)
+            lengths.push_back(a.lengths[i].length.length);
     std::sort(lengths.begin(), lengths.end());
     size_t count = 0;
     double last = 0.;
@@ -77,7 +78,7 @@ std::vector<std::string> missingOf(const Acceptance& a)
     for (const MeasuringLine& line : lines)
         whole += countDistinct(a, line) >= LENGTHS_A_LINE;
     for (const LengthResult& length : a.lengths)
-        longest = std::max(longest, length.length.length);
+        longest = std::max(longest, length.outside ? 0. : length.length.length);
     std::vector<std::string> missing;
     if (whole < LINES)
         missing.push_back(format("%zu of %zu measuring lines have %zu lengths or more (of %zu lines)", whole, LINES, LENGTHS_A_LINE,
