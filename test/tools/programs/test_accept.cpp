@@ -253,8 +253,8 @@ TEST_CASE("Images that calibrated are known again, stored anew, cropped or with 
     const Bench& bench = Bench::get();
     const TemporaryFolder out;
     scenes::Random random(4110);
-    // The calibrating corners with each moved by so much, of the first of which so many are left out.
-    const auto accept = [&](double noise, double shift, int leftOut) {
+    // The calibrating corners moved by so much, in each image by so much more than in the one before; of the first so many are left out.
+    const auto accept = [&](double noise, double shift, int leftOut, double more = 0.) {
         for (int camera : {1, 2})
         {
             std::istringstream in(readFile(bench.folder/format("glass%d.vnl", camera)));
@@ -274,7 +274,8 @@ TEST_CASE("Images that calibrated are known again, stored anew, cropped or with 
                 if (count[name]++ < leftOut)
                     changed << name << " - - -\n";
                 else
-                    changed << name << format(" %.6f %.6f", x + shift + random.normal(noise), y + random.normal(noise)) << rest << '\n';
+                    changed << name << format(" %.6f %.6f", x + shift + more*(double)count.size() + random.normal(noise),
+                                              y + more + random.normal(noise)) << rest << '\n';
             }
             writeFile(out/format("new%d.vnl", camera), changed.str());
         }
@@ -283,14 +284,15 @@ TEST_CASE("Images that calibrated are known again, stored anew, cropped or with 
                        + " --max-error=5");
     };
     for (const auto& [noise, shift, leftOut] : {std::make_tuple(0., 0., 0), {0.03, 0., 0}, {0., 0., 10}, {0.03, 0., 20},
-                                                {0., 1., 0}, {0.03, -3., 0}, {0., 17., 10}})       // cropped or rolled
+                                                {0., 1., 0}, {0.03, -3., 0}, {0., 17., 10},        // cropped or rolled
+                                                {0., 0.5, 0}, {0.03, -3.4, 0}, {0.01, 0.8, 5}})    // resampled
     {
         const ToolResult same = accept(noise, shift, leftOut);
         CAPTURE(noise, shift, leftOut, same.out, same.err);
         CHECK(same.code == 1);
         CHECK(mentions(same.err, "these images calibrated, stored anew or cropped perhaps"));
     }
-    const ToolResult near = accept(0.03, 0.8, 0);
+    const ToolResult near = accept(0.03, 0.8, 0, 0.45);
     CAPTURE(near.out, near.err);
     CHECK(near.code == 0);
 }

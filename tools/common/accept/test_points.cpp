@@ -87,17 +87,23 @@ bool requireOtherImages(const TestPoints& points, const std::vector<std::string>
 {
     if (calibration.provenance.images.empty() || !points.havePixels)
         return false;
+    const double tolerance = sameImageTolerance(pixelSigmaOf(calibration));
     std::vector<std::string> used;
+    std::vector<CalibrationImage> shown;
     for (const std::string& image : images)
     {
         const RigPixels pixels = points.pixelsOf(image, calibration.cameras.size());
+        bool calibrated = false;
         for (size_t c = 0; c < pixels.size(); c++)
-            if (findImage(calibration.provenance.images, (int)c, pixels[c], sameImageTolerance(pixelSigmaOf(calibration))))
-            {
-                used.push_back(image);
-                break;
-            }
+        {
+            shown.push_back({image, (int)c, "", meanOfSeen(pixels[c]), pixels[c]});
+            calibrated = calibrated || findImage(calibration.provenance.images, (int)c, pixels[c], tolerance);
+        }
+        if (calibrated)
+            used.push_back(image);
     }
+    if (used.empty())
+        used = movedAlike(calibration.provenance.images, shown, tolerance);
     if (!used.empty())
         throw Failure("these images calibrated, stored anew or cropped perhaps, or their targets were not moved since, so that they prove "
                       "nothing: " + listed(used) + ". Take others, with the length standard where nothing was calibrated");

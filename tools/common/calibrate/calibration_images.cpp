@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <iterator>
 #include <limits>
+#include <optional>
 
 namespace tools {
 
@@ -57,23 +58,38 @@ std::vector<cv::Point2d> moved(std::vector<cv::Point2d> pixels, const cv::Point2
     return pixels;
 }
 
-/** Whether one shows what the other does so many whole pixels beside it: cropped or rolled. Where half of the pixels do, one of the probes
-does, but for one time in 2^PROBES. @param pixels, others in the order of x */
-bool areSameBeside(const std::vector<cv::Point2d>& pixels, const std::vector<cv::Point2d>& others, double tolerance)
+/** How far beside the pixels of one image those of another are, all by as much: of one that was cropped, rolled or resampled. Where half of
+the pixels are, one of the probes is, but for one time in 2^PROBES. @param pixels, others in the order of x */
+std::optional<cv::Point2d> shiftBetween(const std::vector<cv::Point2d>& pixels, const std::vector<cv::Point2d>& others, double tolerance)
 {
     const size_t PROBES = 8;
     std::vector<cv::Point2d> probes;
     for (size_t i = 0; i < std::min(PROBES, pixels.size()); i++)
         probes.push_back(pixels[i*pixels.size()/std::min(PROBES, pixels.size())]);
+    std::optional<cv::Point2d> best;
+    size_t most = 0;
     for (const cv::Point2d& probe : probes)
         for (const cv::Point2d& other : others)
         {
-            const cv::Point2d whole(std::round(other.x - probe.x), std::round(other.y - probe.y));
-            if (cv::norm(other - probe - whole) < tolerance && countSame(moved(probes, whole), others, tolerance) >= probes.size()/2
-                && areSame(moved(pixels, whole), others, tolerance))
-                return true;
+            const cv::Point2d shift = other - probe;
+            if (countSame(moved(probes, shift), others, tolerance) < probes.size()/2)
+                continue;
+            const size_t count = countSame(moved(pixels, shift), others, tolerance);
+            if (count > most)
+            {
+                most = count;
+                best = shift;
+            }
         }
-    return false;
+    return best && areSame(moved(pixels, *best), others, tolerance) ? best : std::nullopt;
+}
+
+//! A board that was held anew is hardly ever a whole number of pixels beside where it was.
+bool areSameBeside(const std::vector<cv::Point2d>& pixels, const std::vector<cv::Point2d>& others, double tolerance)
+{
+    const std::optional<cv::Point2d> shift = shiftBetween(pixels, others, tolerance);
+    const cv::Point2d whole = shift ? cv::Point2d(std::round(shift->x), std::round(shift->y)) : cv::Point2d();
+    return shift && cv::norm(*shift - whole) < tolerance && areSame(moved(pixels, whole), others, tolerance);
 }
 
 } // namespace
@@ -144,6 +160,26 @@ const CalibrationImage* findImage(const std::vector<CalibrationImage>& images, i
                                          || areSameBeside(image.pixels, sorted, std::min(tolerance, USUAL_TOLERANCE))))
             return &image;
     return nullptr;
+}
+
+std::vector<std::string> movedAlike(const std::vector<CalibrationImage>& images, const std::vector<CalibrationImage>& shown,
+                                    double tolerance)
+{
+    struct Move { const CalibrationImage *from, *to; cv::Point2d by; };
+    const double near = std::min(tolerance, USUAL_TOLERANCE);
+    std::vector<Move> moves;
+    for (const CalibrationImage& to : shown)
+        for (const CalibrationImage& from : images)
+            if (from.camera == to.camera && !from.pixels.empty())
+                if (const auto by = shiftBetween(from.pixels, seenOf(to.pixels), near))
+                    moves.push_back({&from, &to, *by});
+    std::vector<std::string> names;
+    for (const Move& a : moves)
+        if (std::any_of(moves.begin(), moves.end(), [&](const Move& b) {
+                return a.from != b.from && a.to != b.to && a.from->camera == b.from->camera && cv::norm(a.by - b.by) < near; })
+            && std::find(names.begin(), names.end(), a.to->name) == names.end())
+            names.push_back(a.to->name);
+    return names;
 }
 
 bool areOfOneImage(const std::vector<cv::Point2d>& first, const std::vector<cv::Point2d>& second, double tolerance)

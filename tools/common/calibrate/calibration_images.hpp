@@ -46,6 +46,11 @@ one does that was cropped or rolled; null: none. */
 const CalibrationImage* findImage(const std::vector<CalibrationImage>& images, int camera, const std::vector<cv::Point2d>& pixels,
                                   double tolerance);
 
+/** Of the shown images those of which two or more are beside images of their camera by the same shift, whole or not: they were resampled. A
+single board may be moved so; of several, at different places, each moves otherwise. */
+std::vector<std::string> movedAlike(const std::vector<CalibrationImage>& images, const std::vector<CalibrationImage>& shown,
+                                    double tolerance);
+
 } // namespace tools
 
 #endif // REFRACT_TOOLS_CALIBRATION_IMAGES_HPP
