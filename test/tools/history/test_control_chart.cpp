@@ -345,6 +345,18 @@ TEST_CASE("An edited or deleted check is told, at each reading", "[history]")
         CAPTURE(&edit - edits);
         CHECK(brokenAfter(edit).size() == 1);
     }
+    // As if an older tool had written them.
+    const std::vector<std::string> broken = brokenAfter([](nlohmann::json& file) {
+        file.erase("last");
+        for (nlohmann::json& check : file["checks"])
+        {
+            check["verdict"] = "unchanged!";
+            check.erase("sha256");
+            check.erase("previous");
+        }
+    });
+    REQUIRE(broken.size() == 1);
+    CHECK(broken[0].find("3 checks, up to that of " + rig.history.checks[2].time + ", had no SHA-256") == 0);
 }
 
 TEST_CASE("A time to come is refused", "[history]")

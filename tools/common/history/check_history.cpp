@@ -20,6 +20,7 @@ namespace {
 
 const char* const KIND = "refract_check history";
 const double HUNDREDTHS = 100.;         // of pixels
+const char* const CHAINED_LATER = "chained_later";      // a record that was not chained when it was read: whatever it says, it said then
 
 Json jsonOf(const MatrixXd& matrix)
 {
@@ -154,11 +155,13 @@ std::string hashOf(const Json& record, const Json& file)
 //! Where records are not as they were written.
 std::vector<std::string> brokenLinks(const Json& file)
 {
-    std::vector<std::string> edited, broken;
+    std::vector<std::string> edited, later, broken;
     std::string before;
     for (const Json& record : file.at("checks").items())
     {
         const std::string hash = textOrNone(record, "sha256"), time = record.at("time").asText();
+        if (hash.empty() || !textOrNone(record, CHAINED_LATER).empty())
+            later.push_back(time);
         if (!hash.empty() && hash != hashOf(record, file))
             edited.push_back(time);
         if (!hash.empty() && textOrNone(record, "previous") != before)
@@ -171,6 +174,9 @@ std::vector<std::string> brokenLinks(const Json& file)
             + ", or what the file says of their charts and of the rig");
     if (textOrNone(file, "last") != before)
         broken.push_back("the last check was deleted");
+    if (!later.empty())
+        broken.push_back(format("%zu check%s, up to that of %s, had no SHA-256: of an older tool, or it was taken out, and nothing shows "
+                                "whether they were edited", later.size(), later.size() == 1 ? "" : "s", later.back().c_str()));
     return broken;
 }
 
@@ -275,7 +281,10 @@ void writeHistory(const std::string& filename, const CheckHistory& history)
         Json record = check.written;        // what is there keeps what it says of itself, right or wrong
         if (textOrNone(record, "sha256").empty())
         {
+            const bool isNew = !record.isObject();
             record = keptOf(history, check);
+            if (!isNew)
+                record.set(CHAINED_LATER, "yes");
             record.set("previous", last);
             last = hashOf(record, file);
             record.set("sha256", last);
@@ -333,6 +342,9 @@ void requireNotCalibrated(const CheckRecord& check, const Calibration& calibrati
     for (const CalibrationImage& image : check.shown)
         if (findImage(used, image.camera, image.pixels, tolerance))
             throw Failure("'" + image.name + cv::format("' of camera %d", image.camera + 1) + why);
+    const std::vector<std::string> moved = movedAlike(used, check.shown, tolerance);
+    if (!moved.empty())
+        throw Failure("'" + moved[0] + "'" + why);
 }
 
 void requireNew(const CheckHistory& history, const std::string& filename, const CheckRecord& check, double tolerance)
@@ -349,6 +361,14 @@ void requireNew(const CheckHistory& history, const std::string& filename, const 
                 throw Failure("'" + image.name + cv::format("' of camera %d is in '", image.camera + 1) + filename + "' already, as '"
                               + old->name + "' of the check of " + before.time + ", stored anew or cropped perhaps: each check needs "
                               "images of its own. If the target stands where it stood then, say --fixed-target");
+    for (const CheckRecord& before : history.checks)
+    {
+        const std::vector<std::string> moved = movedAlike(before.shown, check.shown, tolerance);
+        if (!moved.empty())
+            throw Failure("'" + moved[0] + "' and others show the target as images of the check of " + before.time + " do, all by as much "
+                          "beside: resampled perhaps. Each check needs images of its own. If the target stands where it stood then, say "
+                          "--fixed-target");
+    }
     for (const CheckRecord& before : history.checks)
         for (const CheckedImage& old : before.images)
             for (const CheckedImage& image : check.images)
