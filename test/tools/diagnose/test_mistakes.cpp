@@ -299,6 +299,38 @@ TEST_CASE("Images of two cameras in one folder are told by their names", "[mista
     }
 }
 
+TEST_CASE("Images of two cameras in one folder, with boards that are held by hand, are told by their names", "[mistakes][slow]")
+{
+    std::cout << "seed " << scenes::seed() << '\n';
+    for (const unsigned salt : {5962u, 5963u, 5964u})
+    {
+        scenes::Random random(salt);
+        Scene scene = makeScene(STEREO_IN_WATER, random);
+        takeImages(scene, false, random);
+        RigData& data = scene.calibration.data;
+        const std::vector<View> views = data.views;
+        data.cameraCount = 1;
+        data.views.clear();
+        for (int c = 0; c < 2; c++)
+            for (size_t i = 0; i < views.size(); i++)
+            {
+                View view = views[i];
+                view.stem = format("cam%d_view%02d", c + 1, (int)i);
+                view.direct[0] = views[i].direct[c];
+                view.glass[0] = views[i].glass[c];
+                view.direct[1].clear();
+                view.glass[1].clear();
+                if (view.hasDirect(0) || view.hasGlass(0))
+                    data.views.push_back(view);
+            }
+        const std::string text = saidOf(scene);
+        CAPTURE(salt, text);
+        CHECK(text.find("those of 'cam1...' and of 'cam2...' calibrated apart") != std::string::npos);
+        CHECK(text.find("turned") == std::string::npos);
+        CHECK(text.find("something else") == std::string::npos);
+    }
+}
+
 TEST_CASE("Cameras of which no two names are equal are told that, and no other cause", "[mistakes]")
 {
     scenes::Random random(5970);

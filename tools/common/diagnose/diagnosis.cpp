@@ -216,6 +216,12 @@ places of their own come last, as they explain any other. */
 std::vector<std::string> imageMistakes(const CalibrationInput& input, const MixUps& mixUps, const PlainFit& plain)
 {
     const double sound = largestSoundError(input.data), clean = cleanError(input, plain);
+    if (!hasPairs(input.data))          // of hand-held boards a window or a lens between two others explains much, too
+    {
+        const Explanation apart = camerasInOneFolder(input);
+        if (apart.px < clean)
+            return told(input, {apart}, clean);
+    }
     std::vector<std::string> sentences = confirmedClear(input, mixUps, clean);
     if (!sentences.empty())
         return sentences;
@@ -368,11 +374,12 @@ bool isSuspicious(const CalibrationInput& input, PlainFit& plain)
     const double clean = cleanError(input, plain);
     if (clean > 0. && CLEAN*plain.px > IMPLAUSIBLE*clean)
         return true;
-    // In another medium than theirs images fit to some extent, with a window that is tilted far, or with another focal length.
+    // In another medium than theirs images fit to some extent, with a window that is tilted far, or with another focal length; those of
+    // two cameras with what is between theirs.
     if (!(CLEAN*clean < plain.px))
         return false;
     plain.otherMedium = wrongMedium(input);
-    return plain.otherMedium->px < EXPLAINS*plain.px;
+    return plain.otherMedium->px < EXPLAINS*plain.px || (!hasPairs(input.data) && camerasInOneFolder(input).px < clean);
 }
 
 bool isSound(const CalibrationInput& input, const PlainFit& plain, bool suspicious)

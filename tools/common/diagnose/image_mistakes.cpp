@@ -194,8 +194,9 @@ Explanation imagesOfOtherMoments(const CalibrationInput& input)
 Explanation camerasInOneFolder(const CalibrationInput& input)
 {
     const size_t runs = input.data.views.empty() ? 0 : runsOf(input.data.views[0].stem).size();
-    const std::string options = hasPairs(input.data) ? "--direct='...', --glass='...', --direct2='...', --glass2='...'"
-                                                     : "--glass='...', --glass2='...'";
+    const bool hasDirect = std::any_of(input.data.views.begin(), input.data.views.end(), [](const View& v) { return v.hasDirect(0); });
+    const std::string options = hasDirect ? "--direct='...', --glass='...', --direct2='...', --glass2='...'"
+                                          : "--glass='...', --glass2='...'";
     Explanation best{"", NO_FIT};
     for (size_t run = 0; run < runs && input.data.cameraCount == 1; run++)
     {

@@ -249,11 +249,12 @@ MixUps findMixUps(const CalibrationInput& input)
                 attempt({a, b}, [=, &data] { return exchanged(data, a, b, direct); }, now,
                         option + cameraSuffix(a) + " and " + option + cameraSuffix(b) + " exchanged");
             }
+    // Of one camera by itself, before which boards are held by hand, turned images are as good as others: the window turns with them.
     const auto mayBe = [&](int change, int camera) {
         return change <= MIRROR || data.imageSize[camera].width == data.imageSize[camera].height; };
     for (int camera = 0; camera < data.cameraCount; camera++)
         for (bool directToo : {false, true})
-            for (int change = 0; change < CHANGES && (data.cameraCount > 1 || !directToo); change++)
+            for (int change = 0; change < CHANGES && (data.cameraCount > 1 || (!directToo && data.countPairs() > 0)); change++)
                 if (mayBe(change, camera))
                     attempt({camera}, [=, &data] { return changedBack(data, (Change)change, camera, directToo); }, lenses,
                             sentenceOf((Change)change, data, camera, directToo));
