@@ -137,8 +137,8 @@ BundleStart startWith(const Options& o, const BundleOptions& bundle, const Calib
     if (turned.cameras.empty() && !(turned.windows > 0.))
         return start;
     if (turned.cameras.size() > 1 && turned.cameras.size() != start.rig.cameras.size())
-        throw Failure(cv::format("--turned has %zu values, and '%s' has %zu cameras: one value for all, or one of each", turned.cameras.size(),
-                             o.start.c_str(), start.rig.cameras.size()));
+        throw Failure(cv::format("--turned has %zu values, and '%s' has %zu cameras: one value for all, or one of each",
+                                 turned.cameras.size(), o.start.c_str(), start.rig.cameras.size()));
     if (file.covariance.empty())
         throw Failure("--turned and --tilted are for a rig that was calibrated, and '" + o.start + "' has no covariance: free what is not "
                       "known (--free)");
