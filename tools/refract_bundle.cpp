@@ -7,6 +7,7 @@
 #include "colmap/colmap_survey.hpp"
 #include "console/cli.hpp"
 #include "console/file_output.hpp"
+#include "console/numbers.hpp"
 #include "console/outputs.hpp"
 #include "console/view_names.hpp"
 #include "formats/point_table.hpp"
@@ -132,8 +133,12 @@ BundleStart startWith(const Options& o, const BundleOptions& bundle, const Calib
 {
     BundleStart start = startOf(file, o.start, bundle);
     MayHaveTurned turned{{}, o.tilted};
-    for (const std::string& degrees : o.turned)
-        turned.cameras.push_back(std::stod(degrees));
+    for (const std::string& text : o.turned)
+    {
+        double degrees = 0.;
+        parseNumber(text, degrees);             // a number, as was checked
+        turned.cameras.push_back(degrees);
+    }
     if (turned.cameras.empty() && !(turned.windows > 0.))
         return start;
     if (turned.cameras.size() > 1 && turned.cameras.size() != start.rig.cameras.size())
