@@ -52,12 +52,6 @@ for sample in build/release/bin/sample_*; do
 done
 
 # What takes long, by turns: the part whose turn it is, and the next ones as long as the hour lasts.
-in_the_hour() {         # in_the_hour COMMAND...: skipped where the hour ends before it does
-  code=0
-  timeout --kill-after=30 "$(left)" "$@" || code=$?
-  [ $code != 124 ] || code=77
-  return $code
-}
 part_slow_tests() {     # a third of those that take a minute each
   thirds=$((($(turn_of 102) - 1)/34 + 1))
   [ "$scope" = --all ] || thirds="1 2 3"
