@@ -29,6 +29,40 @@ TEST_CASE("The pose of a perfectly seen target is exact, whatever lens and windo
     printNumber("refractiveSolvePnP on perfect data, relative", largest, "");
 }
 
+TEST_CASE("A target that nearly touches a steep wall has its pose", "[pnp]")
+{
+    // As a pinhole at their mean origin has them, its points are before the wall.
+    int count = 0;
+    for (int trial = 0; trial < trials(40); trial++)
+    {
+        Random random(240 + trial);
+        const double tilt = random.uniform(0.6, 1), azimuth = random.uniform(0, 2*CV_PI), GAP = 3;
+        const Vec3d normal(std::sin(tilt)*std::cos(azimuth), std::sin(tilt)*std::sin(azimuth), std::cos(tilt));
+        GlassWindow window(normal, 4, 1.49, 0, 1.33);
+        Vec3d rvec = random.vector(0.3);
+        const Vec3d tvec = Vec3d(0, 0, 700) + random.vector(20);
+        Matx33d R;
+        Rodrigues(rvec, R);
+        double nearest = DBL_MAX;
+        const std::vector<Point3d> object = board(9, 6, 16);
+        for (const Point3d& p : object)
+            nearest = std::min(nearest, window.normal.dot(R*Vec3d(p) + tvec));
+        window.distance = nearest - GAP - window.thickness[0];
+        const Ptr<RefractiveCamera> camera = RefractiveCamera::create(Matx33d(2500, 0, 1151.5, 0, 2500, 859.5, 0, 0, 1), noArray(), window);
+        std::vector<Point2d> pixels;
+        Mat status, r, t;
+        refractiveProjectPoints(object, rvec, tvec, camera, pixels, status);
+        if (countNonZero(status) > 0)
+            continue;
+        CAPTURE(trial, tilt, azimuth, seed());
+        REQUIRE(refractiveSolvePnP(object, pixels, camera, r, t));
+        CHECK(norm(r, Mat(rvec)) < 1e-6);
+        CHECK(norm(t, Mat(tvec)) < 1e-6*norm(tvec));
+        count++;
+    }
+    CHECK(count >= 20);
+}
+
 TEST_CASE("Targets of any unit have their pose", "[pnp]")
 {
     Random random(215);

@@ -289,6 +289,22 @@ static std::vector<Pose> startsOf(const Camera& camera, const ImagePoints& point
     return poses;
 }
 
+/** Maximum likelihood from a start that may be within the window, as a closed form's may of a target that is close to it: that is moved
+away from the camera until all points have an image. */
+static PoseMinimum refineShown(const Camera& camera, const ImagePoints& points, const Pose& start)
+{
+    PoseMinimum minimum = { start, NaN };
+    for (double farther : { 1., 1.03, 1.1, 1.25 })
+    {
+        minimum.pose = start;
+        minimum.pose.tvec *= farther;
+        minimum.rms = refinePose(camera, points, minimum.pose);
+        if (!std::isnan(minimum.rms))
+            break;
+    }
+    return minimum;
+}
+
 std::vector<PoseMinimum> findMinima(const Camera& camera, const ImagePoints& points, const Pose& start)
 {
     std::vector<PoseMinimum> minima;
@@ -296,8 +312,7 @@ std::vector<PoseMinimum> findMinima(const Camera& camera, const ImagePoints& poi
         return minima;
     for (const Pose& pose : start.found ? std::vector<Pose>(1, start) : startsOf(camera, points))
     {
-        PoseMinimum minimum = { pose, 0 };
-        minimum.rms = refinePose(camera, points, minimum.pose);
+        PoseMinimum minimum = refineShown(camera, points, pose);
         if (!std::isnan(minimum.rms) && isNew(minima, minimum))
             minima.push_back(minimum);
     }
