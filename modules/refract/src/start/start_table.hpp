@@ -21,8 +21,6 @@ struct TiltRing
 };
 //! Where all but the window is known.
 const TiltRing KNOWN_LENS_TILTS[] = { { 0, 1, 0 }, { 0.2, 8, 0 }, { 0.45, 8, 0 } };
-//! Where what these lead to leaves more than noise. Behind such a window poses are far from those behind another.
-const TiltRing STEEP_TILTS = { 0.7, 16, 0 };
 //! Where each is tried with several lenses.
 const TiltRing SEALED_TILTS[] = { { 0.25, 4, 0.5 } };
 

@@ -5,6 +5,7 @@
 /* Starts of the windows. */
 
 #include "start/window_start.hpp"
+#include "start/coplanarity.hpp"
 #include "start/normal_from_pairs.hpp"
 #include "start/shared_window.hpp"
 #include "start/start_table.hpp"
@@ -18,40 +19,45 @@ namespace {
 const int FEW_VIEWS = 8;
 const size_t LIKELY_TILTS = 4;
 
-//! A steeply tilted window in place of the given one; poses are found behind each.
-std::vector<RigStart> steepTilts(const Rig& given)
+//! As given, and at other distances if that is free.
+std::vector<Rig> atAllDistances(const Rig& given, const RigViews& views, int flags)
+{
+    std::vector<Rig> rigs(1, given);
+    if (flags & GLASS_FREE_DISTANCE)
+        for (const Rig& other : atOtherDistances(given, views))
+            rigs.push_back(other);
+    return rigs;
+}
+
+//! The window as the rays' planes tilt it, at each distance; poses are found behind each.
+std::vector<RigStart> coplanarTilts(const Rig& given, const RigViews& views, int flags)
 {
     std::vector<RigStart> all;
-    for (const WindowPlace& place : placesAround(given.cameras[0].window(), STEEP_TILTS.tilt, STEEP_TILTS.count, STEEP_TILTS.first))
+    if (hasCenter(given.cameras[0].window().shape))
+        return all;
+    for (const Vec3d& normal : normalsByCoplanarity(given.cameras[0], views))
     {
-        all.push_back({ given, {} });
-        setPlace(all.back().rig, 0, place);
+        Rig tilted = given;
+        WindowPlace place = placeOf(given.cameras[0].window());
+        place.normal = normal;
+        setPlace(tilted, 0, place);
+        for (const Rig& rig : atAllDistances(tilted, views, flags))
+            all.push_back({ rig, {} });
     }
     return all;
 }
 
-//! Detected corners err by less: of a coordinate.
-bool leavesMoreThanNoise(const Minimum& minimum)
-{
-    const double NOISE = 0.6;       // px
-    return !(minimum.cost < NOISE*NOISE*minimum.freedom);
-}
-
-//! The given window, and the best few of two rings of tilts, all as they are: only the poses behind each are fitted.
+//! The given window, and the best few of the rings of tilts, all as they are: only the poses behind each are fitted.
 std::vector<RigStart> likelyTilts(const Rig& rig, const RigViews& views)
 {
-    const RigStart given = { rig, {} };
-    const std::vector<Stage> look(1, { FEW_VIEWS, COARSE, LIKELY_TILTS });
-    const Minimum placed = multiStart({ given }, look, views, GLASS_FIX_NORMAL)[0];
-    const RigStart& first = std::isfinite(placed.cost) ? placed : given;    // poses behind one window are near those behind another
-    std::vector<RigStart> all, likely(1, first);
+    std::vector<RigStart> all, likely(1, { rig, {} });
     for (const TiltRing& ring : KNOWN_LENS_TILTS)
-        for (const WindowPlace& place : placesAround(given.rig.cameras[0].window(), ring.tilt, ring.count, ring.first))
+        for (const WindowPlace& place : placesAround(rig.cameras[0].window(), ring.tilt, ring.count, ring.first))
         {
-            all.push_back(first);
+            all.push_back({ rig, {} });
             setPlace(all.back().rig, 0, place);
         }
-    for (const Minimum& best : multiStart(all, look, views, GLASS_FIX_NORMAL))
+    for (const Minimum& best : multiStart(all, { { FEW_VIEWS, COARSE, LIKELY_TILTS } }, views, GLASS_FIX_NORMAL))
         likely.push_back(best);
     return likely;
 }
@@ -93,34 +99,24 @@ RigViews viewsThrough(const RigViews& views, int camera, std::vector<int>& which
 
 std::vector<Minimum> windowMinima(const Camera& camera, const RigViews& views, int flags)
 {
-    std::vector<Rig> rigs(1, { { camera }, { 0 }, { Pose() } });
+    const Rig given = { { camera }, { 0 }, { Pose() } };
     std::vector<Stage> stages(1, { FEW_VIEWS, COARSE });
     if (views.count() > FEW_VIEWS)
         stages.push_back({ ALL_VIEWS, COARSE });
     if (flags & GLASS_FREE_DISTANCE)
     {
-        const std::vector<Rig> others = atOtherDistances(rigs[0], views);
-        rigs.insert(rigs.end(), others.begin(), others.end());
         Stage first = FIRST_OF_MANY;
         first.views = FEW_VIEWS;        // of which the poses are known
         stages.insert(stages.begin(), first);
     }
     flags &= GLASS_FREE_DISTANCE;
-    const auto minimaFrom = [&](const auto& startsOf) {
-        std::vector<RigStart> starts;
-        for (const Rig& rig : rigs)
-            for (const RigStart& start : startsOf(rig))
-                starts.push_back(start);
-        return multiStart(starts, stages, views, flags);
-    };
-    std::vector<Minimum> minima = minimaFrom([&](const Rig& rig) { return likelyTilts(rig, views); });
-    if (leavesMoreThanNoise(minima[0]))
-    {
-        const std::vector<Minimum> steep = minimaFrom(steepTilts);
-        minima.insert(minima.end(), steep.begin(), steep.end());
-        std::stable_sort(minima.begin(), minima.end());
-    }
-    return hillClimb(minima, [&](const Minimum& best) { return withBetterPoses(best, views); }, views, flags);
+    std::vector<RigStart> starts;
+    for (const Rig& rig : atAllDistances(given, views, flags))
+        for (const RigStart& start : likelyTilts(rig, views))
+            starts.push_back(start);
+    for (const RigStart& start : coplanarTilts(given, views, flags))
+        starts.push_back(start);
+    return hillClimb(multiStart(starts, stages, views, flags), [&](const Minimum& best) { return withBetterPoses(best, views); }, views, flags);
 }
 
 namespace {

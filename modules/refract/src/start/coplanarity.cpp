@@ -1,0 +1,194 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+/* With the normal n, a ray v in the camera and a point X of the target, seen with the pose R, t:
+
+    v^T [n]x (R X + t) = 0,     so v^T M (X, 1) = 0 with M = [n]x (R | t) = B W
+
+where the columns of B are two directions across n. For each n the best W of a view is an eigenvector, and its eigenvalue the sum of
+squares: two angles are left to search. */
+
+#include "start/coplanarity.hpp"
+#include "math/dense.hpp"
+
+namespace cv { namespace refract {
+
+namespace {
+
+//! The sum of (v x P)(v x P)^T of a view's points, P homogeneous in its principal axes, of unit size.
+struct ViewMoments
+{
+    Eigen::MatrixXd sum;
+    int dimension;          //!< of P
+};
+
+//! The axes in which points are scattered, of a flat target two; empty if there are fewer.
+std::vector<Vec3d> principalAxes(const std::vector<Point3d>& points, Vec3d& mean, double& size)
+{
+    const double FLAT = 1e-6;       // squares
+    mean = Vec3d();
+    for (const Point3d& p : points)
+        mean += Vec3d(p)*(1./(double)points.size());
+    Matx33d scatter = Matx33d::zeros(), vectors;
+    for (const Point3d& p : points)
+        scatter += (Vec3d(p) - mean)*(Vec3d(p) - mean).t()*(1./(double)points.size());
+    Vec3d values;
+    eigen(scatter, values, vectors);
+    size = std::sqrt(values[0]);
+    std::vector<Vec3d> axes;
+    for (int i = 0; i < 3; i++)
+        if (values[i] > FLAT*values[0])
+            axes.push_back(Vec3d(vectors(i, 0), vectors(i, 1), vectors(i, 2)));
+    return axes;
+}
+
+bool findMoments(const Camera& camera, const std::vector<Point3d>& object, const std::vector<Point2d>& pixels, ViewMoments& moments)
+{
+    std::vector<Point3d> seen;
+    std::vector<Vec3d> rays;
+    for (size_t i = 0; i < pixels.size(); i++)
+    {
+        Vec3d ray;
+        uchar status = REFRACT_OK;
+        if (isWhole(pixels[i]))
+            camera.lens().unproject(1, &pixels[i].x, &pixels[i].y, &ray[0], &ray[1], &ray[2], &status);
+        if (!isWhole(pixels[i]) || status != REFRACT_OK)
+            continue;
+        seen.push_back(object[i]);
+        rays.push_back(ray);
+    }
+    if (seen.empty())
+        return false;
+    Vec3d mean;
+    double size;
+    const std::vector<Vec3d> axes = principalAxes(seen, mean, size);
+    moments.dimension = (int)axes.size() + 1;
+    if (moments.dimension < 3 || (int)seen.size() < 2*moments.dimension)
+        return false;
+    moments.sum.setZero(3*moments.dimension, 3*moments.dimension);
+    Eigen::VectorXd row(3*moments.dimension);
+    for (size_t i = 0; i < seen.size(); i++)
+    {
+        for (int k = 0; k < moments.dimension; k++)
+        {
+            const double p = k < (int)axes.size() ? axes[k].dot(Vec3d(seen[i]) - mean)/size : 1;
+            for (int c = 0; c < 3; c++)
+                row[c*moments.dimension + k] = rays[i][c]*p;
+        }
+        addGram(row.transpose(), 1, moments.sum);
+    }
+    moments.sum = moments.sum.selfadjointView<Eigen::Lower>();
+    return true;
+}
+
+//! Two directions across the normal, and across each other.
+void directionsAcross(const Vec3d& normal, Vec3d& first, Vec3d& second)
+{
+    const Vec3d aside = std::abs(normal[0]) < 0.7 ? Vec3d(1, 0, 0) : Vec3d(0, 1, 0);
+    first = normalize(aside.cross(normal));
+    second = normal.cross(first);
+}
+
+double squaresAt(const Vec3d& normal, const std::vector<ViewMoments>& views)
+{
+    Vec3d across[2];
+    directionsAcross(normal, across[0], across[1]);
+    double sum = 0;
+    for (const ViewMoments& view : views)
+    {
+        const int n = view.dimension;
+        Eigen::MatrixXd B = Eigen::MatrixXd::Zero(3*n, 2*n);
+        for (int c = 0; c < 3; c++)
+            for (int i = 0; i < 2; i++)
+                B.block(c*n, i*n, n, n).diagonal().setConstant(across[i][c]);
+        sum += std::max(SymmetricEigen(propagated(view.sum, B.transpose())).values[0], 0.);
+    }
+    return sum;
+}
+
+struct Candidate
+{
+    double squares;
+    Vec3d normal;
+    bool operator<(const Candidate& other) const { return squares < other.squares; }
+};
+
+//! Downhill, until steps are smaller than so many radians.
+Candidate descend(Candidate at, double step, double smallest, const std::vector<ViewMoments>& views)
+{
+    while (step > smallest)
+    {
+        Vec3d across[2];
+        directionsAcross(at.normal, across[0], across[1]);
+        Candidate best = at;
+        for (int x = -1; x <= 1; x++)
+            for (int y = -1; y <= 1; y++)
+            {
+                const Vec3d tried = normalize(at.normal + step*(x*across[0] + y*across[1]));
+                if ((x || y) && tried[2] > 0)
+                    best = std::min(best, Candidate{ squaresAt(tried, views), tried });
+            }
+        if (!(best < at))
+            step *= 0.5;
+        at = best;
+    }
+    return at;
+}
+
+//! Normals to all sides, up to the steepest, so many radians apart.
+std::vector<Candidate> gridOfNormals(double steepest, double step, const std::vector<ViewMoments>& views)
+{
+    std::vector<Candidate> grid;
+    for (double tilt = 0; tilt < steepest; tilt += step)
+    {
+        const int count = std::max(1, cvRound(2*CV_PI*std::sin(tilt)/step));
+        for (int i = 0; i < count; i++)
+        {
+            const double azimuth = 2*CV_PI*i/count;
+            const Vec3d normal(std::sin(tilt)*std::cos(azimuth), std::sin(tilt)*std::sin(azimuth), std::cos(tilt));
+            grid.push_back({ squaresAt(normal, views), normal });
+        }
+    }
+    return grid;
+}
+
+//! The best of those that are so many radians apart.
+std::vector<Candidate> bestApart(std::vector<Candidate> candidates, double apart, size_t count)
+{
+    std::stable_sort(candidates.begin(), candidates.end());
+    std::vector<Candidate> best;
+    for (const Candidate& candidate : candidates)
+    {
+        const auto isNear = [&](const Candidate& other) { return other.normal.dot(candidate.normal) > std::cos(apart); };
+        if (best.size() < count && std::none_of(best.begin(), best.end(), isNear))
+            best.push_back(candidate);
+    }
+    return best;
+}
+
+} // namespace
+
+std::vector<Vec3d> normalsByCoplanarity(const Camera& camera, const RigViews& views)
+{
+    const double STEP = 0.1, STEEPEST = 1.2, APART = 0.25, SMALLEST = 1e-4;      // radians
+    const size_t LIKELY = 8, COUNT = 2;
+    std::vector<ViewMoments> moments;
+    for (int view = 0; view < views.count(); view++)
+    {
+        ViewMoments of;
+        if (findMoments(camera, views.object[view], views.cameras[0].refracted[view], of))
+            moments.push_back(of);
+    }
+    std::vector<Vec3d> normals;
+    if (moments.empty())
+        return normals;
+    std::vector<Candidate> candidates = bestApart(gridOfNormals(STEEPEST, STEP, moments), APART, LIKELY);
+    for (Candidate& candidate : candidates)
+        candidate = descend(candidate, STEP/2, SMALLEST, moments);
+    for (const Candidate& candidate : bestApart(candidates, APART, COUNT))
+        normals.push_back(candidate.normal);
+    return normals;
+}
+
+}} // namespace
