@@ -21,6 +21,7 @@ struct ViewMoments
 {
     Eigen::MatrixXd sum;
     int dimension;          //!< of P
+    int freedom;            //!< behind a normal that is known
 };
 
 //! The axes in which points are scattered, of a flat target two; empty if there are fewer.
@@ -66,6 +67,7 @@ bool findMoments(const Camera& camera, const std::vector<Point3d>& object, const
     moments.dimension = (int)axes.size() + 1;
     if (moments.dimension < 3 || (int)seen.size() < 2*moments.dimension)
         return false;
+    moments.freedom = (int)seen.size() - (2*moments.dimension - 1);
     moments.sum.setZero(3*moments.dimension, 3*moments.dimension);
     Eigen::VectorXd row(3*moments.dimension);
     for (size_t i = 0; i < seen.size(); i++)
@@ -136,33 +138,33 @@ Candidate descend(Candidate at, double step, double smallest, const std::vector<
     return at;
 }
 
-//! Normals to all sides, up to the steepest, so many radians apart.
-std::vector<Candidate> gridOfNormals(double steepest, double step, const std::vector<ViewMoments>& views)
+Vec3d normalAt(double tilt, double azimuth)
 {
-    std::vector<Candidate> grid;
-    for (double tilt = 0; tilt < steepest; tilt += step)
-    {
-        const int count = std::max(1, cvRound(2*CV_PI*std::sin(tilt)/step));
-        for (int i = 0; i < count; i++)
-        {
-            const double azimuth = 2*CV_PI*i/count;
-            const Vec3d normal(std::sin(tilt)*std::cos(azimuth), std::sin(tilt)*std::sin(azimuth), std::cos(tilt));
-            grid.push_back({ squaresAt(normal, views), normal });
-        }
-    }
-    return grid;
+    return Vec3d(std::sin(tilt)*std::cos(azimuth), std::sin(tilt)*std::sin(azimuth), std::cos(tilt));
 }
 
-//! The best of those that are so many radians apart.
-std::vector<Candidate> bestApart(std::vector<Candidate> candidates, double apart, size_t count)
+//! Of all normals of a tilt the best. @param step radians between those that are tried first
+Candidate bestOfTilt(double tilt, double step, const std::vector<ViewMoments>& views)
 {
-    std::stable_sort(candidates.begin(), candidates.end());
-    std::vector<Candidate> best;
-    for (const Candidate& candidate : candidates)
+    const int count = cvCeil(2*CV_PI*std::sin(tilt)/step), HALVINGS = 4;
+    double azimuth = 0, apart = 2*CV_PI/count;
+    Candidate best = { DBL_MAX, Vec3d() };
+    const auto look = [&](double at)
     {
-        const auto isNear = [&](const Candidate& other) { return other.normal.dot(candidate.normal) > std::cos(apart); };
-        if (best.size() < count && std::none_of(best.begin(), best.end(), isNear))
-            best.push_back(candidate);
+        const Candidate tried = { squaresAt(normalAt(tilt, at), views), normalAt(tilt, at) };
+        if (!(tried < best))
+            return;
+        best = tried;
+        azimuth = at;
+    };
+    for (int i = 0; i < count; i++)
+        look(i*apart);
+    for (int i = 0; i < HALVINGS; i++)
+    {
+        apart *= 0.5;
+        const double middle = azimuth;
+        look(middle - apart);
+        look(middle + apart);
     }
     return best;
 }
@@ -171,23 +173,33 @@ std::vector<Candidate> bestApart(std::vector<Candidate> candidates, double apart
 
 std::vector<Vec3d> normalsByCoplanarity(const Camera& camera, const RigViews& views)
 {
-    const double STEP = 0.1, STEEPEST = 1.2, APART = 0.25, SMALLEST = 1e-4;      // radians
-    const size_t LIKELY = 8, COUNT = 2;
+    const double STEP = 0.1, TILTS = 0.15, STEEPEST = 1.1, SMALLEST = 1e-4;     // radians
+    const double EXCLUDED = 100;        // variances
+    const size_t MOST = 3;
     std::vector<ViewMoments> moments;
+    int freedom = -2;
     for (int view = 0; view < views.count(); view++)
     {
         ViewMoments of;
-        if (findMoments(camera, views.object[view], views.cameras[0].refracted[view], of))
-            moments.push_back(of);
+        if (!findMoments(camera, views.object[view], views.cameras[0].refracted[view], of))
+            continue;
+        moments.push_back(of);
+        freedom += of.freedom;
     }
     std::vector<Vec3d> normals;
     if (moments.empty())
         return normals;
-    std::vector<Candidate> candidates = bestApart(gridOfNormals(STEEPEST, STEP, moments), APART, LIKELY);
-    for (Candidate& candidate : candidates)
-        candidate = descend(candidate, STEP/2, SMALLEST, moments);
-    for (const Candidate& candidate : bestApart(candidates, APART, COUNT))
-        normals.push_back(candidate.normal);
+    std::vector<Candidate> candidates;
+    for (double tilt = TILTS; tilt < STEEPEST; tilt += TILTS)
+        candidates.push_back(bestOfTilt(tilt, STEP, moments));
+    std::sort(candidates.begin(), candidates.end());
+    const Candidate best = descend(candidates[0], STEP/2, SMALLEST, moments);
+    normals.push_back(best.normal);
+    // Where rays are bent by little, the azimuth shows and the tilt hardly.
+    for (const Candidate& other : candidates)
+        if (normals.size() < MOST && other.normal.dot(best.normal) < std::cos(TILTS/2) &&
+            (other.squares - best.squares)*freedom < EXCLUDED*best.squares)
+            normals.push_back(other.normal);
     return normals;
 }
 

@@ -17,7 +17,7 @@ namespace {
 
 // The first search needs the rough shape of the cost only.
 const int FEW_VIEWS = 8;
-const size_t LIKELY_TILTS = 4;
+const size_t LIKELY_TILTS = 2;
 
 //! As given, and at other distances if that is free.
 std::vector<Rig> atAllDistances(const Rig& given, const RigViews& views, int flags)
