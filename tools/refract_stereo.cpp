@@ -15,7 +15,6 @@
 #include "console/view_names.hpp"
 #include "stereo/checked_stereo.hpp"
 #include "stereo/cloud_file.hpp"
-#include "stereo/depth_comparison.hpp"
 #include "stereo/depth_picture.hpp"
 #include "stereo/depth_search.hpp"
 #include "stereo/pair_reader.hpp"
@@ -67,7 +66,7 @@ const int PAIRS_SEARCHED = 5;
 
 struct Options
 {
-    std::string calibration, left, right, viewPattern, depth, out, depthMap, picture, rectifiedFolder, folder, truth, channels;
+    std::string calibration, left, right, viewPattern, depth, out, depthMap, picture, rectifiedFolder, folder, channels;
     std::string matcher = "3way";
     MatcherOptions matching;
     double maxRowError = 0;             // 0: none is set
@@ -93,7 +92,7 @@ void checkCombination(const Options& options)
     const bool single = !options.out.empty() || !options.depthMap.empty() || !options.picture.empty();
     if (!options.folder.empty() && single)
         throw Failure("--out-dir writes cloud, depth map and picture of each pair: leave --out, --depth-map and --picture out");
-    if (options.folder.empty() && !single && options.rectifiedFolder.empty() && options.truth.empty())
+    if (options.folder.empty() && !single && options.rectifiedFolder.empty())
         throw Failure("say what to write: --out=cloud.ply, --depth-map=depth.tiff, --picture=depth.png, or --out-dir=DIR for all "
                       "of them");
     if (options.matching.block % 2 == 0)
@@ -123,8 +122,6 @@ std::vector<PairFiles> filesOf(const Options& options, const std::vector<FramePa
     if (options.folder.empty() && pairs.size() > 1)
         throw Failure(format("'%s' and '%s' are %d pairs: give --out-dir=DIR", options.left.c_str(), options.right.c_str(),
                              (int)pairs.size()));
-    if (!options.truth.empty() && pairs.size() > 1)
-        throw Failure(format("--truth is for one pair, not for %d", (int)pairs.size()));
     const std::string rectified = options.rectifiedFolder.empty() ? "" : options.rectifiedFolder + "/";
     if (options.folder.empty())
         return {{options.out, options.depthMap, options.picture, rectified}};
@@ -141,7 +138,7 @@ std::vector<PairFiles> filesOf(const Options& options, const std::vector<FramePa
 void refuseOverwriting(const Options& options, const std::string& settings, const Frames& first, const Frames& second,
                        const std::vector<PairFiles>& files)
 {
-    std::vector<std::string> inputs = {options.calibration, options.truth, settings};
+    std::vector<std::string> inputs = {options.calibration, settings};
     for (const Frames* frames : {&first, &second})
         for (const std::string& path : frames->paths())
             inputs.push_back(path);
@@ -205,7 +202,7 @@ public:
     const RectifiedRig& rig() const { return rig_; }
 
     //! Writes the pair, unless it is refused.
-    void process(const std::pair<cv::Mat, cv::Mat>& images, const PairFiles& files, const cv::Mat& truth, PairResult& result)
+    void process(const std::pair<cv::Mat, cv::Mat>& images, const PairFiles& files, PairResult& result)
     {
         const int64 start = cv::getTickCount();
         const CheckedStereo checked = checker_.match(images.first, images.second);
@@ -226,14 +223,7 @@ public:
         result.rowsExpected = checked.rows.expected;
         result.seconds = (double)(cv::getTickCount() - start)/cv::getTickFrequency();
         write(files, stereo, cloud, depth);
-        if (!truth.empty())
-        {
-            comparison_ = compareDepths(depth, truth);
-            compareSigmas(cloud, rig_.calibration().cameras[0].camera, truth, comparison_);
-        }
     }
-
-    const DepthComparison& comparison() const { return comparison_; }
 
 private:
     void write(const PairFiles& files, const DenseStereo& stereo, const Cloud& cloud, const cv::Mat& depth) const
@@ -255,7 +245,6 @@ private:
     Options options_;
     RectifiedRig rig_;
     StereoChecker checker_;             // of rig_
-    DepthComparison comparison_;
 };
 
 //! False if the row errors are beyond the caller's limit.
@@ -317,8 +306,6 @@ void addOptions(OptionParser& parser, Options& options)
     parser.add("--out-dir", options.folder, "folder for all three of each pair, made if it is not there");
     parser.add("--rectified-dir", options.rectifiedFolder, "folder for the rectified images (left.png, right.png, pair.png "
                "with lines drawn in) and disparity.tiff (float32, px)");
-    parser.add("--truth", options.truth, "known depth of raw pixels of camera 1 to compare with (float32, as "
-               "refract_simulate writes)");
     parser.add("--matcher", options.matcher, "cv::StereoSGBM along three paths (3way) or all eight (hh: slower)")
         .check(isMember({"3way", "hh"})).captureDefault();
     parser.add("--block", options.matching.block, "side of the matched block, px, odd: larger for noise, smaller for detail")
@@ -359,7 +346,6 @@ int refract_stereo_main(int argc, char** argv)
         for (const CameraCalibration& camera : rig.cameras)
             if (camera.camera->imageSize().empty())
                 camera.camera->setImageSize(images.first.size());
-        const cv::Mat truth = options.truth.empty() ? cv::Mat() : readTrueDepth(options.truth, images.first.size());
         Tool tool(options, rig, options.depth.empty() ? foundRange(rig, reader, frames.pairs, command)
                                                       : givenDepthRange(options.depth, rig));
         if (!command.quiet())
@@ -374,7 +360,7 @@ int refract_stereo_main(int argc, char** argv)
                     images = reader.read(frames.pairs[i]);
                 PairResult result;
                 result.stem = frames.pairs[i].stem;
-                tool.process(images, files[i], truth, result);
+                tool.process(images, files[i], result);
                 (result.refusal.empty() ? results : refused).push_back(result);
                 progress.step();
             }
@@ -384,11 +370,7 @@ int refract_stereo_main(int argc, char** argv)
         for (const PairResult& r : refused)
             command.warn("nothing is written of '" + r.stem + "': " + r.refusal);
         if (!command.quiet())
-        {
-            if (!truth.empty())
-                printComparison(tool.comparison());
             printTable(results, tool.rig());
-        }
         const bool fits = sayContradictions(results, command), rowsFit = areRowsWithin(options, results, command);
         return fits && rowsFit && refused.empty() ? DONE : LIMIT_NOT_MET;
     });

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // refract_stereo as a user runs it: on the bundled scene, and on one that refract_simulate renders.
+#include "depth_comparison.hpp"
 #include "run_tool.hpp"
 #include "paths.hpp"
 #include <catch2/catch.hpp>
@@ -156,17 +157,19 @@ TEST_CASE("refract_stereo agrees with the depth that refract_simulate writes, of
     INFO(rendered.err);
     REQUIRE(rendered.code == 0);
     const std::string call = "refract_stereo " + (folder / "s/truth.yml") + " " + (folder / "s/glass1/scene.png") + " "
-        + (folder / "s/glass2/scene.png") + " --depth=480,850 --truth=" + (folder / "s/glass1/scene_depth.tiff");
+        + (folder / "s/glass2/scene.png") + " --depth=480,850 --depth-map=" + (folder / "d.tiff") + " --out=" + (folder / "c.ply");
     for (const std::string options : {"", " --matcher=hh", " --passes=1", " --block=7"})
     {
         const ToolResult result = runTool(call + options + " --rectified-dir=" + (folder / "r"));
         CAPTURE(options, result.out, result.err);
         REQUIRE(result.code == 0);
         CHECK(result.err.empty());
-        CHECK(numberAfter(result.out, "of these matched") > 75);
-        CHECK(numberAfter(result.out, "of these wrong (over 2 % off)") < 4);
-        CHECK(numberAfter(result.out, "RMS error of the others") < 2.5);
-        CHECK(numberAfter(result.out, "less than 1.96 sz (95 % expected)") > 85);
+        const DepthComparison c = compareWithTruth(folder / "s/truth.yml", folder / "d.tiff", folder / "c.ply",
+                                                   folder / "s/glass1/scene_depth.tiff");
+        CHECK(c.matched > 0.75*c.known);
+        CHECK(c.wrong < 0.04*c.matched);
+        CHECK(c.rms < 2.5);
+        CHECK(c.within > 0.85*c.stated);
     }
     const cv::Mat pair = cv::imread(folder / "r/pair.png");
     CHECK(pair.size() == cv::Size(240, 2*320 + 8));     // one above the other
@@ -180,13 +183,14 @@ TEST_CASE("Where rows differ by many pixels, the first pass is made in slabs, an
     INFO(rendered.err);
     REQUIRE(rendered.code == 0);
     const ToolResult result = runTool("refract_stereo " + (folder / "s/truth.yml") + " " + (folder / "s/glass1/scene.png") + " "
-        + (folder / "s/glass2/scene.png") + " --depth=400,1200 --truth=" + (folder / "s/glass1/scene_depth.tiff") + " --out="
-        + (folder / "c.ply"));
+        + (folder / "s/glass2/scene.png") + " --depth=400,1200 --depth-map=" + (folder / "d.tiff"));
     CAPTURE(result.out, result.err);
     REQUIRE(result.code == 0);
     CHECK(result.err.empty());      // else the rows would be warned of
-    CHECK(numberAfter(result.out, "of these matched") > 65);
-    CHECK(numberAfter(result.out, "of these wrong (over 2 % off)") < 10);
+    const DepthComparison c = compareDepths(cv::imread(folder / "d.tiff", cv::IMREAD_UNCHANGED),
+                                            cv::imread(folder / "s/glass1/scene_depth.tiff", cv::IMREAD_UNCHANGED));
+    CHECK(c.matched > 0.65*c.known);
+    CHECK(c.wrong < 0.1*c.matched);
 }
 
 TEST_CASE("refract_stereo works without any window, if that is said", "[tools][stereo]")
@@ -223,15 +227,17 @@ TEST_CASE("Depth behind two domes is as dense and as good as without windows", "
         std::ofstream(folder / "calib.yml") << (d.name == "none" ? withoutWindows(d.rig) : d.rig);
         const std::string images = folder / (d.name + d.set);
         const ToolResult result = runTool("refract_stereo " + (folder / "calib.yml") + " " + images + "1/scene.png " + images
-            + "2/scene.png --depth=400,1300 --truth=" + images + "1/scene_depth.tiff" + d.options);
+            + "2/scene.png --depth=400,1300 --depth-map=" + (folder / "d.tiff") + " --out=" + (folder / "c.ply") + d.options);
         CAPTURE(d.name, result.out, result.err);
         REQUIRE(result.code == 0);
         CHECK(result.err.empty());
-        d.matched = numberAfter(result.out, "of these matched");
-        d.rms = numberAfter(result.out, "RMS error of the others");
+        const DepthComparison c = compareWithTruth(folder / "calib.yml", folder / "d.tiff", folder / "c.ply",
+                                                   images + "1/scene_depth.tiff");
+        d.matched = 100.*c.matched/c.known;
+        d.rms = c.rms;
         std::cout << "[numbers] dense depth, domes " << d.name << ": " << d.matched << " % matched, " << d.rms << " mm RMS; of no windows "
                   << d.matched/all[0].matched << ", " << d.rms/all[0].rms << std::endl;
-        CHECK(numberAfter(result.out, "less than 1.96 sz (95 % expected)") > 93);
+        CHECK(c.within > 0.93*c.stated);
         CHECK(d.matched > 0.98*all[0].matched);
         // In water a dome that is not about its camera spreads the view: a pixel is wider there.
         CHECK(d.rms < (d.rig == inWater ? 1.1 : 1.03)*all[0].rms);
@@ -450,7 +456,6 @@ TEST_CASE("refract_stereo refuses with one sentence and writes nothing", "[tools
         {tool + PAIR + DEPTH + " --passes=3" + out, "--passes"},
         {tool + PAIR + DEPTH + " --matcher=best" + out, "--matcher"},
         {tool + PAIR + DEPTH + " --max-row-error=0" + out, "--max-row-error"},
-        {tool + PAIR + DEPTH + " --truth=" + LEFT + out, "no depth map"},
         {tool + PAIR + DEPTH + " --no-window" + out, "--no-window"},
         {tool + "'" + SCENE + "/*1/scene.jpg' '" + SCENE + "/*2/scene.jpg'" + DEPTH + " --out-dir=" + (folder / "dir"),
          "equal names"},

@@ -1,11 +1,10 @@
 // This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
 // SPDX-License-Identifier: Apache-2.0
 
-#include "console/failure.hpp"
-#include "stereo/depth_comparison.hpp"
+#include "depth_comparison.hpp"
+#include "stereo/cloud_file.hpp"
 #include "temporary_folder.hpp"
 #include <catch2/catch.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <cmath>
 
 using namespace tools;
@@ -46,9 +45,9 @@ TEST_CASE("Stated errors are compared where camera 1 sees the points", "[tools][
     truth(cv::Rect(90, 0, 10, 80)).setTo(NONE);
     const auto at = [](double u, double v, double z, float sigma) {
         const cv::Vec3f X((float)((u - 50)/100*z), (float)((v - 40)/100*z), (float)z);
-        return CloudPoint{X, cv::Vec3f(1, 1, sigma), cv::Vec3b()};
+        return MeasuredPoint{cv::Point3d(X[0], X[1], X[2]), sigma};
     };
-    const Cloud cloud = {at(50.3, 40.7, 501, 1), at(60, 20, 497, 1), at(10, 10, 302, 1.1f), at(10, 10, 302, 1),
+    const std::vector<MeasuredPoint> cloud = {at(50.3, 40.7, 501, 1), at(60, 20, 497, 1), at(10, 10, 302, 1.1f), at(10, 10, 302, 1),
                          at(19.5, 10, 300, 1),      // at the edge of two surfaces
                          at(30, 30, 550, 1),        // wrong
                          at(95, 30, 500, 1), at(-5, 30, 500, 1), at(50, 40, 500, NONE)};
@@ -60,17 +59,14 @@ TEST_CASE("Stated errors are compared where camera 1 sees the points", "[tools][
     CHECK(c.stated == 4);
 }
 
-TEST_CASE("A true depth is float32 of the image's size", "[tools][stereo][comparison]")
+TEST_CASE("A cloud is read as it was written", "[tools][stereo][comparison]")
 {
     const TemporaryFolder folder;
-    cv::Mat truth(8, 10, CV_32F, cv::Scalar(500));
-    truth.at<float>(1, 1) = NONE;
-    cv::imwrite(folder / "good.tiff", truth);
-    cv::imwrite(folder / "bytes.png", cv::Mat(8, 10, CV_8U, cv::Scalar(50)));
-    const cv::Mat read = readTrueDepth(folder / "good.tiff", cv::Size(10, 8));
-    CHECK(read.at<float>(0, 0) == 500);
-    CHECK(std::isnan(read.at<float>(1, 1)));
-    CHECK_THROWS_AS(readTrueDepth(folder / "good.tiff", cv::Size(8, 10)), Failure);
-    CHECK_THROWS_AS(readTrueDepth(folder / "bytes.png", cv::Size(10, 8)), Failure);
-    CHECK_THROWS_AS(readTrueDepth(folder / "none.tiff", cv::Size(10, 8)), Failure);
+    writeCloud(folder / "cloud.ply", {{{1, 2, 500}, {0.5f, 0.25f, 2}, {1, 2, 3}}, {{-1, 0.5f, 300}, {1, 1, NONE}, {}}}, "mm");
+    const std::vector<MeasuredPoint> cloud = readCloud(folder / "cloud.ply");
+    REQUIRE(cloud.size() == 2);
+    CHECK(cloud[0].point == cv::Point3d(1, 2, 500));
+    CHECK(cloud[0].sigmaZ == 2);
+    CHECK(cloud[1].point == cv::Point3d(-1, 0.5, 300));
+    CHECK(std::isnan(cloud[1].sigmaZ));
 }

@@ -5,7 +5,7 @@
 #include "programs/run_tool.hpp"
 #include "calibrate/calib_file.hpp"
 #include "calibrate/rig_model.hpp"
-#include "stereo/depth_comparison.hpp"
+#include "depth_comparison.hpp"
 #include <catch2/catch.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>

@@ -6,7 +6,7 @@
 #include "calibrate/parameter_columns.hpp"
 #include "calibrate/rig_model.hpp"
 #include "programs/run_tool.hpp"
-#include "stereo/depth_comparison.hpp"
+#include "depth_comparison.hpp"
 #include "stereo/depth_picture.hpp"
 #include <catch2/catch.hpp>
 #include <opencv2/calib3d.hpp>

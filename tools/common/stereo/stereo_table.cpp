@@ -67,18 +67,4 @@ void printTable(const std::vector<PairResult>& results, const RectifiedRig& rig)
     table.print(std::cout);
 }
 
-void printComparison(const DepthComparison& c)
-{
-    Table table({"against the true depth", ""});
-    table.add({"pixels with a true depth", std::to_string(c.known)});
-    const auto percent = [](int part, int of, const char* how) { return of > 0 ? format(how, 100.*part/of) : "none"; };
-    table.add({"of these matched", percent(c.matched, c.known, "%.1f %%")});
-    table.add({format("of these wrong (over %g %% off)", 100*WRONG_DEPTH), percent(c.wrong, c.matched, "%.2f %%")});
-    table.add({"RMS error of the others", orUnknown(c.rms, "%.4g")});
-    if (c.stated)
-        table.add({"points whose error is less than 1.96 sz (95 % expected)", format("%.1f %%", 100.*c.within/c.stated)});
-    table.print(std::cout);
-    std::cout << std::endl;
-}
-
 } // namespace tools

@@ -4,7 +4,6 @@
 #ifndef REFRACT_TOOLS_STEREO_TABLE_HPP
 #define REFRACT_TOOLS_STEREO_TABLE_HPP
 
-#include "stereo/depth_comparison.hpp"
 #include "stereo/rectified_rig.hpp"
 #include <string>
 #include <vector>
@@ -22,9 +21,6 @@ struct PairResult
 
 //! A row for each pair, or one for all where these are too many to read.
 void printTable(const std::vector<PairResult>& results, const RectifiedRig& rig);
-
-//! Against a known depth.
-void printComparison(const DepthComparison& comparison);
 
 } // namespace tools
 
