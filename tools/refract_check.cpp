@@ -32,8 +32,8 @@ calibration the same. An edited or deleted record is told. Two checks at once wa
 --outer-index=seawater:T=8,S=35 says the scene's medium now, where it is not that of the calibration.
 
 Exit code: 0 unchanged, 2 something changed (with --history, or a chart is beyond its limit), 1 could not tell: bad images, or images
-that would not show a tilt of --detect degrees, or in a scene a turn of a camera, with a probability of 95 % (not with --history, which says
-what drift would be found).)";
+that would not show a tilt of --detect degrees, or in a scene a turn of a camera, with a probability of 95 % (not with --history, whose
+estimates have their +-).)";
 
 #include "calibrate/units.hpp"
 #include "check/check_output.hpp"

@@ -286,7 +286,6 @@ private:
         check.center = window.center;
         check.parameters = tested.at.count();
         check.lengthPerDegree = tested.change->isShift ? window.radius/DEGREES : 0.;
-        check.chart = tested.change->chart;
         const double degrees = tested.change->isShift ? DEGREES/window.radius : DEGREES;
         const int n = check.parameters;
         const VectorXd variances = SymmetricEigen(covarianceOf(tested)).values;

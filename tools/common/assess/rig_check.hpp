@@ -27,7 +27,6 @@ struct WindowCheck
     double tiltDeg;
     double stdDeg[2];           //!< of the tilt, two principal ones, larger first
     double lengthPerDegree;     //!< of a centre; 0: it is a tilt
-    std::string chart;          //!< Change::chart
     int parameters;             //!< of the change
     double probability;         //!< of so large a tilt or a larger one if nothing moved
     bool moved;                 //!< this explains the images, and nothing that is not a window does so better

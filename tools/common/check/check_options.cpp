@@ -95,9 +95,6 @@ void CheckOptions::addTo(OptionParser& parser)
     parser.addFlag("--fixed-target", fixedTarget, "the target stands where it stood at the checks before: its images may look alike")
         .needs(ofHistory);
     parser.add("--serial", serial, "serial number of the window that stands on it: must be that of calib.yml");
-    parser.add("--drift", drift, "degrees a month: says within how many checks such a drift of a window is found, of a dome's "
-        "centre as seen from a radius away")
-        .check(moreThanZero()).captureDefault().needs(ofHistory);
 }
 
 std::string CheckOptions::pageFile() const

@@ -28,7 +28,6 @@ struct CheckOptions
     double placement = -1.;         //!< negative: that of the calibration
     ConditionsOptions conditions;
     std::string history, page, time, serial;
-    double drift = 0.02;
 
     bool hasHistory() const { return !history.empty(); }
     bool isOfScene() const { return !scene[0].empty(); }

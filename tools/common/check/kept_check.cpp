@@ -9,8 +9,9 @@
 #include "history/history_page.hpp"
 #include "measure/measurement.hpp"
 #include "report/plot.hpp"
+#include <chrono>
 #include <iostream>
-#include <map>
+#include <thread>
 
 using namespace cv::refract;
 
@@ -20,10 +21,23 @@ namespace {
 // Of an unmoved target's images no two have the same noise; a hundredth of a pixel is kept of each.
 const double IDENTICAL = 0.008;
 
+//! Waits for another check of this history; its file, FILE.lock, goes with the last of them. Throws Failure if the other takes too long.
+std::unique_ptr<FileLock> lockOf(const std::string& history)
+{
+    const int SECONDS = 300, TRIES_A_SECOND = 10;
+    for (int i = 0; i < SECONDS*TRIES_A_SECOND; i++)
+    {
+        if (std::unique_ptr<FileLock> lock = FileLock::tryOnce(history + ".lock"))
+            return lock;
+        std::this_thread::sleep_for(std::chrono::milliseconds(1000/TRIES_A_SECOND));
+    }
+    throw Failure("another check has kept '" + history + "' for " + std::to_string(SECONDS/60) + " minutes: wait for it, or end it");
+}
+
 } // namespace
 
 KeptCheck::KeptCheck(const CheckOptions& options, const Calibration& calibration)
-    : options_(options), calibration_(calibration), lock_(options.history), history_(readHistory(options.history))
+    : options_(options), calibration_(calibration), lock_(lockOf(options.history)), history_(readHistory(options.history))
 {
     Plot::checkAvailable("--history");
     requireSameRig(history_, options.history, calibration, options.calibration);
@@ -51,10 +65,7 @@ void KeptCheck::add(const CheckResult& check, const CheckInput& input, const Che
         for (int c = 0; c < (int)input.rig.cameras.size(); c++)
             record_.byParameters.col(columnsOf(withWedges(input).rig, c).outerIndex).setZero();
     history_.checks.push_back(record_);
-    std::map<std::string, double> drifts;
-    for (const WindowCheck& window : check.windows)
-        drifts[window.chart] = options_.drift*(window.lengthPerDegree > 0. ? window.lengthPerDegree : 1.);
-    result_ = chartHistory(history_, covariance_, (1. - SHARE_OF_CHECK)*options_.falseAlarm, drifts);
+    result_ = chartHistory(history_, covariance_, (1. - SHARE_OF_CHECK)*options_.falseAlarm);
 }
 
 void KeptCheck::write(const std::string& verdict, bool isGood) const
@@ -72,23 +83,15 @@ void KeptCheck::print() const
               << (beyond.empty() ? "all charts are within their limits" : "beyond the limit: " + listed(beyond)) << '\n';
     if (!result_.causes.empty())
         std::cout << "What explains all checks best: " << causesIn(result_, history_) << '\n';
-    if (!result_.mainTrend(history_).empty())
-        std::cout << "Trend of " << result_.mainTrend(history_) << '\n';
-    for (const FoundDrift& found : result_.found)
-        std::cout << foundText(found, history_, result_.interval) << '\n';
     std::cout << "Charts: " << options_.pageFile() << '\n';
 }
 
 Json KeptCheck::json() const
 {
-    Json found = Json::array();
-    for (const FoundDrift& f : result_.found)
-        found.append({{"name", history_.changes[f.change].name}, {"drift_deg_per_month", options_.drift}, {"drift_per_month", f.perMonth},
-                      {"checks", f.checks}});
     return {{"checks", history_.checks.size()}, {"broken", history_.broken}, {"alarm", isAlarm()},
             {"beyond", result_.chartsBeyond(history_)},
             {"causes", causesIn(result_, history_)}, {"t2", result_.points.back().t2}, {"t2_limit", result_.points.back().limitT2},
-            {"ewma_limit", result_.points.back().limit}, {"found", found}};
+            {"ewma_limit", result_.points.back().limit}};
 }
 
 } // namespace tools

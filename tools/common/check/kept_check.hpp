@@ -5,10 +5,10 @@
 #define REFRACT_TOOLS_KEPT_CHECK_HPP
 
 #include "check/check_images.hpp"
+#include "console/file_lock.hpp"
 #include "console/json.hpp"
 #include "history/check_history.hpp"
-#include "history/history_lock.hpp"
-#include "history/rig_history.hpp"
+#include "history/drift.hpp"
 
 /* A check among all others of its calibration (--history). */
 namespace tools {
@@ -38,7 +38,7 @@ public:
 private:
     const CheckOptions& options_;
     const Calibration& calibration_;
-    HistoryLock lock_;
+    std::unique_ptr<FileLock> lock_;    //!< while it lives, no other check is between reading and writing this history
     CheckHistory history_;
     MatrixXd covariance_;
     std::string time_;

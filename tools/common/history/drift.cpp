@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "history/drift.hpp"
+#include "console/lines.hpp"
 #include "console/table.hpp"
 #include "math/dense.hpp"
 #include "measure/vector_length.hpp"
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 using namespace cv::refract;
@@ -17,7 +17,6 @@ namespace {
 
 const double NOT_KNOWN = std::numeric_limits<double>::quiet_NaN();
 const double VERY_STRONG = 10.;         // difference of two chi^2
-const double ALMOST_SURE = 1.645;       // 95 %
 
 //! A step or a ramp, as a share of what it is at the last check.
 double profileAt(const CheckHistory& history, size_t check, size_t since, bool steady)
@@ -125,71 +124,6 @@ private:
     VectorXd b_;
 };
 
-//! The expected EWMAs of checks like the last one while one thing drifts, over their standard deviations: the largest of any parameter.
-class DriftRun
-{
-public:
-    DriftRun(const CheckHistory& history, const MatrixXd& covariance, int change, double perCheck)
-        : history_(history), filter_(covariance, DIRECTIONS), count_(firstParameters(history.changes).back()),
-          ewma_(MatrixXd::Zero(count_, DIRECTIONS)), variance_(VectorXd::Zero(count_))
-    {
-        const CheckRecord& last = history.checks.back();
-        const int row = rowOf(last, history.changes, change), size = history.changes[change].size();
-        unit_ = MatrixXd::Zero(last.score.size(), DIRECTIONS);
-        for (int i = 0; i < DIRECTIONS && row >= 0; i++)
-            unit_.col(i) = timesVector(last.information.middleCols(row, size), direction(i, size))*perCheck
-                           / history.changes[change].factor;
-        for (const CheckRecord& check : history.checks)
-            step(check, MatrixXd::Zero(check.score.size(), DIRECTIONS));
-    }
-
-    //! Of the direction in which it shows least.
-    double next(int n)
-    {
-        step(history_.checks.back(), n*unit_);
-        const MatrixXd z = variance_.cwiseSqrt().cwiseInverse().asDiagonal()*ewma_;
-        return z.array().isNaN().select(0., z.array().abs()).colwise().maxCoeff().minCoeff();
-    }
-
-private:
-    static const int DIRECTIONS = 26;
-
-    //! Of one, two or three parameters.
-    static VectorXd direction(int i, int size)
-    {
-        VectorXd d = VectorXd::Zero(size);
-        if (size == 1)
-            d[0] = 1.;
-        else if (size == 2)
-            d << std::cos(CV_PI*i/DIRECTIONS), std::sin(CV_PI*i/DIRECTIONS);
-        else                            // a spiral over half a sphere
-        {
-            const double z = (i + 0.5)/DIRECTIONS, r = std::sqrt(1. - z*z), turn = i*CV_PI*(3. - std::sqrt(5.));
-            d << r*std::cos(turn), r*std::sin(turn), z;
-        }
-        return d;
-    }
-
-    void step(const CheckRecord& check, const MatrixXd& scores)
-    {
-        const Innovation innovation = filter_.add(check, history_.changes, scores);
-        const MatrixXd u = innovation.stdAlone.cwiseInverse().asDiagonal()*innovation.alone;
-        const std::vector<int> parameters = parametersOf(check, history_.changes);
-        for (size_t i = 0; i < parameters.size(); i++)
-        {
-            const int p = parameters[i];
-            ewma_.row(p) = (1. - EWMA_WEIGHT)*ewma_.row(p) + EWMA_WEIGHT*u.row((Eigen::Index)i);
-            variance_[p] = std::pow(EWMA_WEIGHT, 2) + std::pow(1. - EWMA_WEIGHT, 2)*variance_[p];
-        }
-    }
-
-    const CheckHistory& history_;
-    InnovationFilter filter_;
-    int count_;
-    MatrixXd ewma_, unit_;
-    VectorXd variance_;
-};
-
 } // namespace
 
 int rowOf(const CheckRecord& check, const std::vector<ChartedChange>& changes, int change)
@@ -254,26 +188,39 @@ std::string sentenceOf(const DriftCause& cause, const CheckHistory& history)
         + (cause.sinceCalibration ? " since the calibration" : " since " + history.checks[cause.since].time.substr(0, 10));
 }
 
-int checksUntilFound(const CheckHistory& history, const MatrixXd& covariance, const ChartLimit& last, int change, double perMonth,
-                     double interval)
+std::vector<std::string> HistoryResult::chartsBeyond(const CheckHistory& history) const
 {
-    DriftRun run(history, covariance, change, perMonth*interval/MONTH);
-    for (int n = 1; n <= LONGEST; n++)
-        if (run.next(n) >= last.limit + ALMOST_SURE)
-            return n;
-    return 0;
+    const ChartPoint& last = points.back();
+    const std::vector<int> first = firstParameters(history.changes);
+    std::vector<std::string> names;
+    for (size_t c = 0; c < history.changes.size(); c++)
+        for (int i = first[c]; i < first[c + 1]; i++)
+            if (last.isBeyond(i))
+            {
+                const std::string axis = history.changes[c].axes[i - first[c]];
+                names.push_back(history.changes[c].name + (axis.empty() ? "" : " " + axis));
+            }
+    if (last.isBeyondT2())
+        names.push_back("T^2 of all");
+    return names;
 }
 
-double intervalOf(const CheckHistory& history)
+HistoryResult chartHistory(const CheckHistory& history, const MatrixXd& covariance, double falseAlarm)
 {
-    std::vector<double> intervals;
-    for (size_t i = 1; i < history.checks.size(); i++)
-        intervals.push_back(secondsOf(history.checks[i].time) - secondsOf(history.checks[i - 1].time));
-    if (intervals.empty())
-        return MONTH;
-    std::nth_element(intervals.begin(), intervals.begin() + (long)intervals.size()/2, intervals.end());
-    const double median = intervals[intervals.size()/2];
-    return median > 0. ? median : MONTH;
+    HistoryResult result;
+    result.points = controlCharts(history, covariance, chartLimits(history, covariance, falseAlarm));
+    if (result.isAlarm())
+        result.causes = driftCauses(history, covariance);
+    return result;
+}
+
+std::string causesIn(const HistoryResult& result, const CheckHistory& history)
+{
+    const size_t MOST = 3;
+    std::vector<std::string> sentences;
+    for (const DriftCause& cause : result.causes)
+        sentences.push_back(sentenceOf(cause, history));
+    return alternatives(sentences, MOST);
 }
 
 } // namespace tools

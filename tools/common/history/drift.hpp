@@ -6,32 +6,8 @@
 
 #include "history/control_chart.hpp"
 
-/* What a history says about one thing that changes with time: which it is, how fast, when it reaches a limit; and how fast a drift
-would be found. */
+/* All that a history says, for the terminal and the page: its charts, and after an alarm what changed. */
 namespace tools {
-
-const double MONTH = 30.4375*86400.;        // seconds
-
-/** What the estimates of one parameter do: stay, grow steadily from the first check or from some time on, or change at once. All checks
-share the calibration's error. */
-struct Trend
-{
-    double perMonth, std;               //!< in the chart's unit; NaN: fewer than three times
-    double since, sinceStd;             //!< where it began, in seconds (since 1970); NaN: before the first check
-    double step;                        //!< after which check it changed at once, and did not grow; NaN: it did not
-    int checksSince;                    //!< that: one does not tell a jump from a drift
-    double limit;                       //!< the lasting change that brings the EWMA to its limit, in the chart's unit
-    /** When it gets there: the expected time, and one standard deviation of slope and beginning to either side; NaN: the slope is not
-    larger than twice its own, or it is after the 22nd century. Seconds since 1970. */
-    double reached, earliest, latest;
-    int among = 1;                      //!< so many parameters it is looked for in: of twenty one seems to have one by chance
-
-    bool isSignificant() const;
-};
-
-//! Estimates of one parameter, each at its time. @param start seconds since 1970, of the first check
-Trend trendThrough(const std::vector<double>& months, const VectorXd& value, const MatrixXd& covariance, double limit, double start);
-std::vector<Trend> trendsOf(const CheckHistory& history, const MatrixXd& covariance, const std::vector<ChartPoint>& points);
 
 //! Where a change's parameters are in a check; -1: its images do not tell.
 int rowOf(const CheckRecord& check, const std::vector<ChartedChange>& changes, int change);
@@ -63,15 +39,22 @@ std::vector<DriftCause> driftCauses(const CheckHistory& history, const MatrixXd&
 //! "window of camera 1: tilt has drifted by 0.081 +- 0.012 degrees since 2026-03-01"
 std::string sentenceOf(const DriftCause& cause, const CheckHistory& history);
 
-/** Within how many more checks like the last one a drift that begins now is found with a probability of 95 % or more, whatever its
-direction; 0: not within LONGEST.
-@param perMonth in the chart's unit. @param interval between checks, seconds */
-int checksUntilFound(const CheckHistory& history, const MatrixXd& covariance, const ChartLimit& last, int change, double perMonth,
-                     double interval);
-const int LONGEST = 120;
+struct HistoryResult
+{
+    std::vector<ChartPoint> points;     //!< of each check
+    std::vector<DriftCause> causes;     //!< of an alarm of the last check; else empty
 
-//! The median time between checks; a month where there are fewer than two.
-double intervalOf(const CheckHistory& history);
+    bool isAlarm() const { return points.back().isAlarm(); }
+    //! Which charts the last check is beyond.
+    std::vector<std::string> chartsBeyond(const CheckHistory& history) const;
+};
+
+/** @param covariance of the calibrated parameters, in the order of withWedges()
+@param falseAlarm probability of an alarm at a check, if nothing changed */
+HistoryResult chartHistory(const CheckHistory& history, const MatrixXd& covariance, double falseAlarm);
+
+//! "a; or b", the best three.
+std::string causesIn(const HistoryResult& result, const CheckHistory& history);
 
 } // namespace tools
 

@@ -105,7 +105,7 @@ std::string t2Figure(const CheckHistory& history, const HistoryResult& result)
     return plot.svg();
 }
 
-PageList trendRows(const CheckHistory& history, const HistoryResult& result, const MatrixXd& covariance)
+PageList estimateRows(const CheckHistory& history, const HistoryResult& result, const MatrixXd& covariance)
 {
     const std::vector<int> first = firstParameters(history.changes);
     const Estimates last = estimatesOf(history, history.checks.back(), covariance);
@@ -122,7 +122,6 @@ PageList trendRows(const CheckHistory& history, const HistoryResult& result, con
             row.set("class", point.isBeyond(i) ? "missed" : "");
             row.set("value", std::isnan(last.value[i]) ? "-" : plusMinus(last.value[i], last.std[i])
                     + (change.unit.empty() ? "" : " " + change.unit));
-            row.set("trend", trendText(result.trends[i], history, change.unit));
             list.push_back(row);
         }
     return list;
@@ -183,13 +182,9 @@ std::string historyPage(const CheckHistory& history, const HistoryResult& result
     page.set("broken", pageList(history.broken));
     page.set("has_causes", !result.causes.empty());
     page.set("causes", causesIn(result, history));
-    PageList found;
-    for (const FoundDrift& f : result.found)
-        found.emplace_back("text", foundText(f, history, result.interval));
-    page.set("found", found);
     page.set("t2", t2Figure(history, result));
     page.set("figures", figures(history, result, covariance));
-    page.set("trends", trendRows(history, result, covariance));
+    page.set("estimates", estimateRows(history, result, covariance));
     page.set("checks", checkRows(history, result));
     return renderPage("the history", HISTORY_TEMPLATE, page);
 }

@@ -4,7 +4,7 @@
 #ifndef REFRACT_TOOLS_HISTORY_PAGE_HPP
 #define REFRACT_TOOLS_HISTORY_PAGE_HPP
 
-#include "history/rig_history.hpp"
+#include "history/drift.hpp"
 
 namespace tools {
 
