@@ -89,7 +89,7 @@ Plot::Plot(cv::Size image) : Plot(600, 70 + 460*image.height/image.width)
 {
     script_ << "set lmargin at screen " << 60./600 << "\nset rmargin at screen " << 480./600 << "\nset xrange [-0.5:"
             << image.width - 0.5 << "]\nset yrange [" << image.height - 0.5 << ":-0.5]\n"
-            << "set size ratio -1\nset xlabel 'u, px'\nset ylabel 'v, px'\n";
+            << "set size ratio -1\nset xlabel 'u, px'\nset ylabel 'v, px' offset 1,0\n";
 }
 
 std::string Plot::svg() const
