@@ -250,7 +250,7 @@ TEST_CASE("A camera in a tube, from images to the tube", "[tools][dome]")
     INFO(r.out << r.err);
     REQUIRE(r.code == 0);
     CHECK(mentions(r.out, "camera off the axis, mm"));
-    CHECK(mentions(readFile(rig.out("r.html")), "Where the camera sits"));
+    CHECK(mentions(readFile(rig.out("r.html")), "Seen from above"));
     cv::refract::GlassWindow is, expected;
     readWindows(rig, is, expected);
     CHECK(is.shape == cv::refract::WINDOW_TUBE);

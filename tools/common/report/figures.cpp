@@ -4,7 +4,6 @@
 #include "report/figures.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "calibrate/window_face.hpp"
-#include "console/median.hpp"
 #include "console/table.hpp"
 #include "report/plot.hpp"
 #include <algorithm>
@@ -21,14 +20,6 @@ using Rows = std::vector<std::vector<double>>;
 
 const char* const DIRECT_COLOUR = "#64748b";
 const char* const GLASS_COLOUR = "#0284c7";
-
-//! 1, 2 or 5 times a power of ten, not above x: a factor that reads well.
-double roundFactor(double x)
-{
-    const double power = std::pow(10., std::floor(std::log10(x)));
-    const double lead = x/power;
-    return power*(lead >= 5 ? 5 : lead >= 2 ? 2 : 1);
-}
 
 //! "set xtics" with the names of the views that are shown.
 std::string viewTics(const RigCalibration& c, const std::vector<int>& views)
@@ -47,52 +38,7 @@ std::vector<Residual> glassResiduals(const RigCalibration& c, int camera)
     return list;
 }
 
-//! Middle size of the residuals; arrows are scaled by it, so that one wild corner does not make the others vanish.
-double typicalLength(const std::vector<Residual>& residuals)
-{
-    std::vector<double> lengths;
-    for (const Residual& r : residuals)
-        lengths.push_back(norm(r.error));
-    if (lengths.empty())
-        return 0.;
-    return median(lengths);
-}
-
 } // namespace
-
-Figure drawDisplacement(const RigCalibration& c, int camera)
-{
-    const int COLUMNS = 20;
-    const Ptr<RefractiveCamera> through = c.fit.rig.cameras[camera], bare = copyWithWindow(through, GlassWindow());
-    const Size size = c.data.imageSize[camera];
-    const double z = workingDepth(c, camera)[1], step = (double)size.width/COLUMNS;
-    std::vector<Point2d> from;
-    for (double v = step/2; v < size.height; v += step)
-        for (double u = step/2; u < size.width; u += step)
-            from.emplace_back(u, v);
-    std::vector<Point3d> scene;
-    std::vector<Point2d> to;
-    refractivePointsOnPlane(from, scene, bare, Vec4d(0, 0, 1, z));
-    refractiveProjectPoints(scene, Vec3d(), Vec3d(), through, to);
-
-    double longest = 0.;
-    for (size_t i = 0; i < from.size(); i++)
-        if (seen(to[i]))
-            longest = std::max(longest, norm(to[i] - from[i]));
-    const double scale = longest > 0 ? roundFactor(1.5*step/longest) : 1.;
-    Rows rows;
-    for (size_t i = 0; i < from.size(); i++)
-    {
-        const Point2d d = to[i] - from[i];
-        if (seen(d))
-            rows.push_back({from[i].x, from[i].y, d.x*scale, d.y*scale, norm(d)});
-    }
-    Plot plot(size);
-    plot.data("arrows", rows);
-    plot << "set cblabel 'displacement, px'\nunset key\n"
-         << "plot $arrows using 1:2:3:4:5 with vectors filled head size " << step/5 << ",25 linewidth 1.3 linecolor palette\n";
-    return {plot.svg(), format("at depth z = %.4g; arrows drawn %g times their length, longest %.1f px", z, scale, longest)};
-}
 
 Figure drawViewRms(const RigCalibration& c, int camera)
 {
@@ -117,22 +63,6 @@ Figure drawViewRms(const RigCalibration& c, int camera)
          << "$views using ($1+0.19):3 with boxes linecolor rgb '" << GLASS_COLOUR << "' title 'through the window', "
          << c.fit.rms << " with lines linecolor rgb '#dc2626' dashtype 2 title 'all'\n";
     return {plot.svg(), ""};
-}
-
-Figure drawResidualVectors(const RigCalibration& c, int camera)
-{
-    const std::vector<Residual> residuals = glassResiduals(c, camera);
-    const Size size = c.data.imageSize[camera];
-    const double typical = typicalLength(residuals);
-    const double scale = typical > 0 ? roundFactor(size.width/25./typical) : 1.;
-    Rows rows;
-    for (const Residual& r : residuals)
-        rows.push_back({r.pixel.x, r.pixel.y, r.error.x*scale, r.error.y*scale, norm(r.error)});
-    Plot plot(size);
-    plot.data("arrows", rows);
-    plot << "set cblabel 'residual, px'\nunset key\n"
-         << "plot $arrows using 1:2:3:4:5 with vectors filled head size " << size.width/120. << ",25 linecolor palette\n";
-    return {plot.svg(), format("arrows drawn %g times their length", scale)};
 }
 
 Figure drawResidualMap(const RigCalibration& c, int camera)
@@ -163,37 +93,6 @@ Figure drawResidualMap(const RigCalibration& c, int camera)
          << "unset key\nset style fill solid noborder\n"
          << "plot $cells using 1:2:4:4:3 with boxxyerror linecolor palette\n";
     return {plot.svg(), ""};
-}
-
-Figure drawResidualHistogram(const RigCalibration& c, int camera)
-{
-    const int BINS = 41;
-    std::vector<double> values;
-    for (const Residual& r : glassResiduals(c, camera))
-    {
-        values.push_back(r.error.x);
-        values.push_back(r.error.y);
-    }
-    const double sigma = rmsOf(c, camera, true).px/std::sqrt(2.);
-    const double width = 10.*sigma/BINS;        // +- 5 sigma; what lies beyond goes into the last bin
-    std::vector<double> density(BINS);
-    for (double value : values)
-    {
-        const int bin = (int)std::floor((value + 5.*sigma)/width);
-        density[std::min(BINS - 1, std::max(0, bin))] += 1./(values.size()*width);
-    }
-    Rows rows;
-    for (int i = 0; i < BINS; i++)
-        rows.push_back({(i + 0.5)*width - 5.*sigma, density[i]});
-    Plot plot(560, 320);
-    plot.data("bins", rows);
-    plot << "set xlabel 'residual in u and v, px'\nset ylabel 'share of the residuals per px'\nset yrange [0:*]\nset samples 300\n"
-         << "set style fill solid 0.6 noborder\nset boxwidth " << 0.9*width << "\nset key top right\n"
-         << "set xrange [" << -5.*sigma << ':' << 5.*sigma << "]\n"
-         << "plot $bins using 1:2 with boxes linecolor rgb '" << GLASS_COLOUR << "' title 'corners', "
-         << "exp(-x*x/(2*" << sigma << "**2))/(" << sigma << "*sqrt(2*pi)) with lines linewidth 2 linecolor rgb '#dc2626' "
-         << "title 'normal law'\n";
-    return {plot.svg(), format("sigma = %.3f px per coordinate", sigma)};
 }
 
 Figure drawCoverage(const RigCalibration& c, int camera)

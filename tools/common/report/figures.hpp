@@ -18,26 +18,14 @@ struct Figure
 //! Section through camera, window and boards: axis 0 = seen from above (x-z), 1 = from the side (y-z). To scale.
 Figure drawSideView(const RigCalibration& calibration, int camera, int axis);
 
-//! A dome or tube, and where the camera is in it: the section through the camera, the centre and the direction in which it looks. To scale.
-Figure drawDome(const RigCalibration& calibration, int camera);
-
 //! All cameras, windows and points from one side, obliquely from above. @param azimuthDeg 0: from behind the cameras, 90: from the right
 Figure drawRig(const RigCalibration& calibration, double azimuthDeg);
-
-//! Where the window moves the image of points at the middle working depth.
-Figure drawDisplacement(const RigCalibration& calibration, int camera);
 
 //! RMS of each view, direct and through the window.
 Figure drawViewRms(const RigCalibration& calibration, int camera);
 
-//! Residuals through the window as arrows over the image.
-Figure drawResidualVectors(const RigCalibration& calibration, int camera);
-
 //! Mean residual of each cell of the image: what is left is not noise.
 Figure drawResidualMap(const RigCalibration& calibration, int camera);
-
-//! Both residual coordinates against the normal law.
-Figure drawResidualHistogram(const RigCalibration& calibration, int camera);
 
 //! Where the image was covered by corners, direct and through the window.
 Figure drawCoverage(const RigCalibration& calibration, int camera);

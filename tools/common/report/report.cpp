@@ -319,9 +319,7 @@ std::string makeReport(const RigCalibration& c, const Assessment& assessment, co
 
     const bool isRig = c.data.cameraCount > 1;
     const std::vector<Photo> photos = photosToShow(c);
-    const int domes = (int)std::count_if(c.fit.rig.cameras.begin(), c.fit.rig.cameras.end(), [](const auto& camera) {
-        return isRound(camera->window()); });
-    Progress progress("drawing the report", (c.influences.empty() ? 8 : 9)*c.data.cameraCount + domes + (isRig ? 2 : 0)
+    Progress progress("drawing the report", (c.influences.empty() ? 5 : 6)*c.data.cameraCount + (isRig ? 2 : 0)
                                              + (int)(assessment.errors.size() + photos.size()) + 1, quiet);
     PageList onSheet, after;
     (hasRoom(findings) ? onSheet : after).push_back(errorOverRange(c, assessment, progress));

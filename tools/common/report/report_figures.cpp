@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "report/report_figures.hpp"
-#include "calibrate/window_face.hpp"
 #include "console/progress.hpp"
 #include "report/figures.hpp"
 
@@ -30,12 +29,6 @@ PageList figuresOf(const RigCalibration& c, int camera, Progress& progress)
         "To scale: the camera at the left, its rays bending at the window, the boards where they were seen");
     add(drawSideView(c, camera, 1), "Seen from the side",
         "The same with y pointing down; a window that is not where you mounted it shows here");
-    if (isRound(c.fit.rig.cameras[camera]->window()))
-        add(drawDome(c, camera), "Where the camera sits",
-            "To scale, cut through the camera and the centre: rays that pass the centre go straight, the others bend at the glass, "
-            "the more the farther the camera is from the centre");
-    add(drawDisplacement(c, camera), "What the window does",
-        "Each arrow leads from where a point would be seen without the window to where it is seen");
     add(drawCoverage(c, camera), "Where the board was seen",
         "Empty parts of the image are extrapolated: what is measured there is less certain");
     add(drawViewRms(c, camera), "Residual of each view",
@@ -43,13 +36,9 @@ PageList figuresOf(const RigCalibration& c, int camera, Progress& progress)
     if (!c.influences.empty())
         add(drawInfluence(c, camera), "Which view pulls",
             "How far the window turns or moves if a view is left out; a bar far above the line means that the result hangs on that view");
-    add(drawResidualVectors(c, camera), "Residuals through the window",
-        "Arrows should point in all directions; a pattern (all outwards, a swirl) means that the model misses something");
     add(drawResidualMap(c, camera), "Mean residual over the image",
         "Noise averages out, so most cells should be blue or green; red cells next to each other, where residuals all point the "
         "same way, are a systematic error. Cells with few corners are left white");
-    add(drawResidualHistogram(c, camera), "Residuals against the normal law",
-        "The bars should follow the curve; long tails are single bad corners");
     return list;
 }
 
