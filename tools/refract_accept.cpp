@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "accept/acceptance_output.hpp"
-#include "accept/board_points.hpp"
-#include "accept/pixel_noise.hpp"
-#include "accept/scale_test.hpp"
+#include "accept/test_points.hpp"
+#include "accept/acceptance.hpp"
 #include "calibrate/calibration_images.hpp"
 #include "calibrate/conditions.hpp"
 #include "calibrate/units.hpp"

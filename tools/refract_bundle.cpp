@@ -2,9 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "bundle/bundle_output.hpp"
-#include "bundle/moments.hpp"
+#include "bundle/matches.hpp"
+#include "bundle/bundle_findings.hpp"
 #include "calibrate/units.hpp"
-#include "colmap/colmap_survey.hpp"
+#include "colmap/survey_output.hpp"
 #include "console/cli.hpp"
 #include "console/file_output.hpp"
 #include "console/numbers.hpp"

@@ -58,18 +58,14 @@ value. A PASS that is not the whole truth says so: "PASS; look at the weak point
 
 The same input gives the same bytes: outputs carry the time of the newest image (or that of SOURCE_DATE_EPOCH).)";
 
-#include "assess/calibrate_images.hpp"
 #include "assess/given_images.hpp"
 #include "calibrate/given_rig.hpp"
-#include "calibrate/image_fit.hpp"
 #include "calibrate/lens_choice.hpp"
 #include "calibrate/pinhole_camera.hpp"
-#include "calibrate/pinhole_rig.hpp"
 #include "calibrate/units.hpp"
 #include "calibrate/window_face.hpp"
 #include "console/cli.hpp"
 #include "console/file_output.hpp"
-#include "console/lines.hpp"
 #include "console/outputs.hpp"
 #include "console/progress.hpp"
 #include "console/sha256.hpp"
@@ -80,8 +76,6 @@ The same input gives the same bytes: outputs carry the time of the newest image 
 #include "report/report.hpp"
 #include "report/summary.hpp"
 #include "report/summary_json.hpp"
-#include <cmath>
-#include <set>
 #include <iostream>
 #include <map>
 #include <memory>

@@ -37,7 +37,6 @@ estimates have their +-).)";
 
 #include "calibrate/units.hpp"
 #include "check/check_output.hpp"
-#include "check/check_power.hpp"
 #include "check/kept_check.hpp"
 #include "console/cli.hpp"
 #include "console/colour.hpp"
@@ -131,9 +130,7 @@ int refract_check_main(int argc, char** argv)
     return runTool(argc, argv, MANUAL, [](Command& command) {
         CheckOptions options = parsed<CheckOptions>(command, [](OptionParser& parser, CheckOptions& o) { o.addTo(parser); });
         options.complete();
-        const Calibration asCalibrated = readCalibration(options.calibration);
-        requireWindows(asCalibrated, options.calibration, false, "");
-        warnOfContradictions(asCalibrated, options.calibration, command);
+        const Calibration asCalibrated = readCalibration(options.calibration, false, command, "");
         options.completeFrom(asCalibrated);
         const Calibration calibration = options.conditions.appliedTo(asCalibrated, options.calibration);
         std::vector<std::string> inputs = options.inputs();

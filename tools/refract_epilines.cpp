@@ -10,7 +10,7 @@
 #include "console/outputs.hpp"
 #include "console/point_file.hpp"
 #include "console/table.hpp"
-#include "report/epipolar_picture.hpp"
+#include "report/drawing.hpp"
 #include "target/missing_target.hpp"
 
 #include <algorithm>
@@ -145,9 +145,7 @@ int refract_epilines_main(int argc, char** argv)
         if (options.points.empty() == !options.target.given())
             throw Failure("give either --points=FILE or a target (--size, --square)");
 
-        Calibration rig = readCalibration(options.calibration);
-        requireWindows(rig, options.calibration, options.noWindow);
-        warnOfContradictions(rig, options.calibration, command);
+        Calibration rig = readCalibration(options.calibration, options.noWindow, command);
         checkOutputs({{"--out", options.out, OUTPUT_PICTURE}},
                      {options.calibration, options.image1, options.image2, options.points, command.settings()});
         if (rig.single())

@@ -39,7 +39,6 @@ met, or the boards contradict the sheet.)";
 #include "console/outputs.hpp"
 #include "console/progress.hpp"
 #include "console/table.hpp"
-#include "report/drawing.hpp"
 #include "report/plot.hpp"
 #include "stereo/cloud_file.hpp"
 #include "target/detected_images.hpp"
@@ -363,9 +362,7 @@ int refract_laser_main(int argc, char** argv)
     return runTool(argc, argv, MANUAL, [](Command& command) {
         const Options options = parsed(command, addOptions);
         checkOptions(options, command.settings());
-        const Calibration asCalibrated = readCalibration(options.calibration);
-        requireWindows(asCalibrated, options.calibration, options.noWindow);
-        warnOfContradictions(asCalibrated, options.calibration, command);
+        const Calibration asCalibrated = readCalibration(options.calibration, options.noWindow, command);
         const Calibration calibration = options.conditions.appliedTo(asCalibrated, options.calibration);
         if (options.conditions.isSaid() && !command.quiet())
             std::cout << options.conditions.notice(asCalibrated) << '\n';

@@ -10,7 +10,7 @@
 #include "match/depth_range.hpp"
 #include "match/features.hpp"
 #include "match/scene_matches.hpp"
-#include "report/epipolar_picture.hpp"
+#include "report/drawing.hpp"
 
 #include <iostream>
 #include <sstream>
@@ -129,9 +129,7 @@ int refract_match_main(int argc, char** argv)
 {
     return runTool(argc, argv, MANUAL, [](Command& command) {
         Options options = parsed(command, addOptions);
-        const Calibration calibration = readCalibration(options.calibration);
-        requireWindows(calibration, options.calibration, options.noWindow);
-        warnOfContradictions(calibration, options.calibration, command);
+        const Calibration calibration = readCalibration(options.calibration, options.noWindow, command);
         std::vector<std::string> inputs = options.images;
         inputs.insert(inputs.end(), {options.calibration, command.settings()});
         checkOutputs({{"--out", options.out, OUTPUT_TEXT}, {"--picture", options.picture, OUTPUT_PICTURE}}, inputs);

@@ -7,7 +7,6 @@
 #include "measure/measured_views.hpp"
 #include "measure/measurement.hpp"
 #include "measure/outside_image.hpp"
-#include "measure/target_lengths.hpp"
 #include "calibrate/conditions.hpp"
 #include "calibrate/units.hpp"
 #include "console/cli.hpp"
@@ -306,9 +305,7 @@ int refract_measure_main(int argc, char** argv)
         std::unique_ptr<const Target> target;
         if (options.target.given())
             target = std::make_unique<Target>(options.target);
-        const Calibration asCalibrated = readCalibration(options.files.calibration);
-        requireWindows(asCalibrated, options.files.calibration, options.noWindow);
-        warnOfContradictions(asCalibrated, options.files.calibration, command);
+        const Calibration asCalibrated = readCalibration(options.files.calibration, options.noWindow, command);
         const Calibration calibration = options.conditions.appliedTo(asCalibrated, options.files.calibration);
         if (target)
             requireSameUnit(calibration, target->square(), options.unit);

@@ -7,7 +7,8 @@
 #include "console/outputs.hpp"
 #include "console/progress.hpp"
 #include "simulate/scene_file.hpp"
-#include "simulate/true_line.hpp"
+#include "simulate/light_source.hpp"
+#include "simulate/render.hpp"
 
 #include <opencv2/imgcodecs.hpp>
 #include <iostream>

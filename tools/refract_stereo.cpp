@@ -8,7 +8,7 @@
 #include "console/cli.hpp"
 #include "console/file_output.hpp"
 #include "console/frames.hpp"
-#include "console/median.hpp"
+#include "console/numbers.hpp"
 #include "console/outputs.hpp"
 #include "console/progress.hpp"
 #include "console/table.hpp"
@@ -19,7 +19,6 @@
 #include "stereo/depth_search.hpp"
 #include "stereo/pair_reader.hpp"
 #include "stereo/raw_depth.hpp"
-#include "stereo/rectified_pictures.hpp"
 #include "stereo/stereo_table.hpp"
 
 #include <algorithm>

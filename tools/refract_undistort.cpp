@@ -242,9 +242,7 @@ int refract_undistort_main(int argc, char** argv)
         const Options options = parsed(command, addOptions);
         if (options.colmap.empty() && !options.sources.empty())
             depthOf(options);           // before any file is read
-        const Calibration calibration = readCalibration(options.calibration);
-        requireWindows(calibration, options.calibration, options.noWindow);
-        warnOfContradictions(calibration, options.calibration, command);
+        const Calibration calibration = readCalibration(options.calibration, options.noWindow, command);
         return options.colmap.empty() ? undistortImages(options, calibration, command) : undistortSurvey(options, calibration, command);
     });
 }

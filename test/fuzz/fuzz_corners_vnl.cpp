@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "file_harness.hpp"
-#include "target/corners_vnl.hpp"
+#include "target/detected_points.hpp"
 
 // mrcal's corners.vnl, of a target of six points.
 

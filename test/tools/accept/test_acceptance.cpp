@@ -3,7 +3,7 @@
 
 // Decisions with a guard band: how often they are wrong; lines; what is read.
 #include "acceptance_scene.hpp"
-#include "accept/measuring_lines.hpp"
+#include "accept/acceptance.hpp"
 #include "console/failure.hpp"
 #include "temporary_file.hpp"
 #include <cstdlib>

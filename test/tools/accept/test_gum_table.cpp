@@ -3,7 +3,7 @@
 
 // The budget of one quantity: its rows add up, and to what the quantity really errs by.
 #include "acceptance_scene.hpp"
-#include "accept/pixel_noise.hpp"
+#include "accept/test_points.hpp"
 
 using namespace acceptance_scene;
 

@@ -6,7 +6,7 @@
 #define REFRACT_TEST_TOOLS_FITTED_RIG_HPP
 
 #include "assess/rig_calibration.hpp"
-#include "calibrate/image_fit.hpp"
+#include "calibrate/fit.hpp"
 #include "paper_rig.hpp"
 
 //! Fitted from the rig itself, which knows all that is given; lengths in mm.

@@ -4,10 +4,10 @@
 /* Is a stated +- true, in every flow of refract_calib? RMS error over RMS stated, over many trials, of points, normal,
 distance, lens, R and T. The long form is hidden: run with [.honesty]. */
 #include "measure/eigen_matrix.hpp"
-#include "measure/joint_error.hpp"
+#include "measure/point_error.hpp"
 #include "measure/measurement.hpp"
-#include "assess/heldout_test.hpp"
-#include "calibrate/image_fit.hpp"
+#include "assess/cross_validation.hpp"
+#include "calibrate/fit.hpp"
 #include "calibrate/lens_choice.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "calibrate/outliers.hpp"

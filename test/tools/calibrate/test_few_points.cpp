@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // Views with too few points for a pose: left out by name, or refused by name where nothing would be left.
-#include "calibrate/few_points.hpp"
+#include "calibrate/outliers.hpp"
 #include <catch2/catch.hpp>
 
 using namespace cv;

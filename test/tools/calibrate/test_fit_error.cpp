@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // What fitImages throws speaks of files and options.
-#include "calibrate/fit_error.hpp"
-#include "calibrate/image_fit.hpp"
+#include "calibrate/fit.hpp"
 #include "paper_rig.hpp"
 
 using namespace cv;

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // Indices as users give them: numbers and names.
-#include "calibrate/given_index.hpp"
+#include "calibrate/given_std.hpp"
 #include "console/failure.hpp"
 #include "console/numbers.hpp"
 #include <catch2/catch.hpp>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // What is known of where windows are, from the command line into the fit.
-#include "calibrate/image_fit.hpp"
+#include "calibrate/fit.hpp"
 #include "calibrate/starting_model.hpp"
 #include "console/failure.hpp"
 #include "rig_scenes.hpp"

@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // The lens model that refract_calib chooses: between OpenCV's and cv::fisheye's, from direct images, or through the window.
-#include "calibrate/image_fit.hpp"
+#include "calibrate/fit.hpp"
 #include "calibrate/lens_choice.hpp"
 #include "calibrate/pinhole_camera.hpp"
-#include "calibrate/pinhole_rig.hpp"
 #include "scenes.hpp"
 #include <catch2/catch.hpp>
 

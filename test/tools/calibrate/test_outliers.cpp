@@ -3,7 +3,7 @@
 
 // rejectOutliers: what the robust fit takes out of the data, and what it says if it cannot.
 #include "calibrate/outliers.hpp"
-#include "calibrate/image_fit.hpp"
+#include "calibrate/fit.hpp"
 #include "paper_rig.hpp"
 
 using namespace cv;

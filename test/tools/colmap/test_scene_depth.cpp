@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // Depth between points, and the pinhole nearest to a camera with a window.
-#include "colmap/nearest_pinhole.hpp"
 #include "colmap/scene_depth.hpp"
 #include "scenes.hpp"
 #include <catch2/catch.hpp>

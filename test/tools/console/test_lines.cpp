@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // Text broken into lines: none is wider than a terminal, and no word is lost.
-#include "console/lines.hpp"
+#include "console/table.hpp"
 #include <catch2/catch.hpp>
 #include <random>
 

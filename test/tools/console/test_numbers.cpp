@@ -6,7 +6,7 @@
 #include "console/options.hpp"
 #include "console/point_file.hpp"
 #include "german.hpp"
-#include "target/corners_vnl.hpp"
+#include "target/detected_points.hpp"
 #include <cmath>
 #include <fstream>
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // Numbers beside their uncertainty, and letters of any encoding.
-#include "console/rounded.hpp"
+#include "console/numbers.hpp"
 #include "console/utf8.hpp"
 #include <catch2/catch.hpp>
 

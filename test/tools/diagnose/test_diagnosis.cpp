@@ -8,7 +8,7 @@
 #include "diagnose/image_disagreement.hpp"
 #include "diagnose/value_mistakes.hpp"
 #include "assess/rig_calibration.hpp"
-#include "calibrate/image_fit.hpp"
+#include "calibrate/fit.hpp"
 #include "paper_rig.hpp"
 
 using namespace cv;

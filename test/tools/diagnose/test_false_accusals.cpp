@@ -8,7 +8,7 @@ of refusals, extrapolated. One calibration is fitted; then values, targets and n
 explains is found by the quick fit that starts from it. */
 #include "diagnose/mistake_scenes.hpp"
 #include "diagnose/causes.hpp"
-#include "measure/chi_squared.hpp"
+#include "measure/distributions.hpp"
 
 using namespace mistakes;
 

@@ -5,8 +5,8 @@
 #include "diagnose/hypothesis_tests.hpp"
 #include "diagnose/causes.hpp"
 #include "assess/rig_calibration.hpp"
-#include "calibrate/image_fit.hpp"
-#include "measure/chi_squared.hpp"
+#include "calibrate/fit.hpp"
+#include "measure/distributions.hpp"
 #include "paper_rig.hpp"
 
 using namespace cv;

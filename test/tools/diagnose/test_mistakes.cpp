@@ -5,7 +5,7 @@
 apart (square, thickness and index in air; which of two images is the mirrored one; a motion of the boards and a tilt of the window),
 both are named with "or", and that is right; a tilt that hides a motion is in the +- of the normal, and nothing is said. */
 #include "diagnose/mistake_scenes.hpp"
-#include "measure/chi_squared.hpp"
+#include "measure/distributions.hpp"
 #include <ctime>
 #include <functional>
 #include <set>

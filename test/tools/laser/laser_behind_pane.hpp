@@ -6,7 +6,7 @@
 #define REFRACT_TEST_TOOLS_LASER_BEHIND_PANE_HPP
 
 #include "laser_scene.hpp"
-#include "simulate/true_line.hpp"
+#include "simulate/render.hpp"
 
 namespace laser {
 

@@ -6,7 +6,7 @@ stated uncertainty; beside them a plane for the sheet, and the camera's window i
 calibration leaves them, and so is how the laser was built. */
 #include "laser/scan_line.hpp"
 #include "laser/sheet_fit.hpp"
-#include "laser/sheet_surface.hpp"
+#include "laser/sheet.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "calibrate/rig_model.hpp"
 #include "console/failure.hpp"

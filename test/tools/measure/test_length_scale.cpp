@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // Lengths that contradict a target: is the stated deviation of their mean ratio true, and is a rig that changed told by it?
-#include "measure/length_scale.hpp"
+#include "measure/measured_doubts.hpp"
 #include "../accept/acceptance_scene.hpp"
 
 using namespace cv;

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // Coverage factors against the table of EA-4/02 M:2022 (table E.1) and exact values of Student's t.
-#include "measure/student_t.hpp"
+#include "measure/distributions.hpp"
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>

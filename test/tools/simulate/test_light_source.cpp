@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // Lines and fringes of emitters behind windows, in images: where the truth says, and where the module projects the points.
-#include "laser/laser_signal.hpp"
 #include "laser/ridges.hpp"
 #include "scenes.hpp"
-#include "simulate/true_line.hpp"
+#include "simulate/light_source.hpp"
+#include "simulate/render.hpp"
 #include "target/target.hpp"
 
 #include <iostream>

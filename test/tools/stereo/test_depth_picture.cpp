@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "stereo/depth_picture.hpp"
-#include "stereo/rectified_pictures.hpp"
 #include "temporary_folder.hpp"
 #include <catch2/catch.hpp>
 #include <opencv2/imgcodecs.hpp>

@@ -3,7 +3,7 @@
 
 // Matches that no point explains.
 #include "scene_pair.hpp"
-#include "stereo/epipolar_check.hpp"
+#include "stereo/match_support.hpp"
 #include <catch2/catch.hpp>
 
 using namespace tools;

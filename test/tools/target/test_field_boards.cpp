@@ -11,7 +11,6 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <catch2/catch.hpp>
-#include <filesystem>
 
 using namespace tools;
 using cv::Mat;

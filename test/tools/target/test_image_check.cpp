@@ -3,7 +3,7 @@
 
 // Files that are no images of one camera are refused before anything is searched, and the sentence names the file.
 #include "target/image_check.hpp"
-#include "console/exif.hpp"
+#include "console/images.hpp"
 #include "console/failure.hpp"
 #include "temporary_folder.hpp"
 #include <catch2/catch.hpp>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // What the images of a board still lack: said one by one, and heard.
-#include "target/next_view.hpp"
+#include "target/board_quality.hpp"
 #include <catch2/catch.hpp>
 #include <opencv2/calib3d.hpp>
 

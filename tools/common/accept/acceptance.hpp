@@ -86,6 +86,24 @@ struct CommonScale
 //! None: fewer than three lengths, or the errors do not show it.
 std::optional<CommonScale> commonScale(const std::vector<LengthResult>& lengths);
 
+/** Whether the lengths are those of a board with the square that calibrated, as far as their certificates tell: between its points there
+is nothing but sqrt(a^2 + b^2) squares. If it is that board, a wrong square makes both sides wrong alike, and the test does not see it.
+@param lengths as certified @param square of the calibration; 0: not known */
+bool areOfBoard(const std::vector<CalibratedLength>& lengths, double square);
+
+/* What VDI/VDE 2634 part 1 asks of the lengths that test an optical system: seven measuring lines anywhere in the volume, five
+lengths on each, the longest at least two thirds of the volume's longest diagonal. */
+
+//! Lengths on one straight line, as indices.
+using MeasuringLine = std::vector<size_t>;
+
+/** Lines are inferred from where lengths were measured: from the longest on, a length is on a line if it is along it, within a tenth
+of its own length, and both of its ends are within a twentieth of the line's longest length from it. */
+std::vector<MeasuringLine> measuringLines(const Acceptance& acceptance);
+
+//! What the test lacks, half a sentence each; empty: nothing.
+std::vector<std::string> missingOf(const Acceptance& acceptance);
+
 } // namespace tools
 
 #endif // REFRACT_TOOLS_ACCEPTANCE_HPP

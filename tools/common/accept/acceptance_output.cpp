@@ -4,8 +4,7 @@
 #include "accept/acceptance_output.hpp"
 #include "console/colour.hpp"
 #include "console/json.hpp"
-#include "console/lines.hpp"
-#include "console/rounded.hpp"
+#include "console/numbers.hpp"
 #include "console/table.hpp"
 #include "report/digest.hpp"
 #include <algorithm>

@@ -2,12 +2,17 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "accept/certificate.hpp"
+#include "accept/acceptance.hpp"
 #include "accept/certificate_template.hpp"
-#include "accept/error_plot.hpp"
-#include "console/rounded.hpp"
+#include "console/failure.hpp"
+#include "console/numbers.hpp"
+#include "console/options.hpp"
 #include "console/sha256.hpp"
 #include "console/table.hpp"
+#include "console/times.hpp"
+#include "console/utf8.hpp"
 #include "report/page_template.hpp"
+#include "report/plot.hpp"
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -18,6 +23,64 @@ namespace tools {
 namespace {
 
 const double NONE = std::numeric_limits<double>::quiet_NaN();
+const int WIDTH = 460, HEIGHT = 300;
+
+//! Errors with their U over the tested length, between the limits. SVG.
+std::string drawErrorsOverLength(const Acceptance& a)
+{
+    Plot plot(WIDTH, HEIGHT);
+    std::vector<std::vector<double>> errors, limits;
+    double longest = 0., highest = 0.;
+    for (const LengthResult& r : a.lengths)
+    {
+        errors.push_back({r.length.length, r.error, r.U()});
+        longest = std::max(longest, r.length.length);
+        highest = std::max({highest, std::abs(r.error) + r.U(), r.limit});
+    }
+    for (int i = 0; i <= 20; i++)
+    {
+        const double length = 1.1*longest*i/20;
+        limits.push_back({length, a.limit.of(length)});
+    }
+    const std::string unit = a.unit.empty() ? "" : ", " + a.unit;
+    plot.data("errors", errors);
+    plot.data("limits", limits);
+    plot << "set xlabel " << Plot::quoted("length" + unit) << "\nset ylabel " << Plot::quoted("error of indication" + unit)
+         << "\nset xrange [0:" << 1.1*longest << "]\nset yrange [" << -1.1*highest << ':' << 1.1*highest << "]\nset key off\n"
+         << "plot $limits using 1:2 with lines linewidth 2 linecolor rgb '#dc2626', $limits using 1:(-$2) with lines linewidth 2 "
+            "linecolor rgb '#dc2626', 0 with lines linecolor rgb '#94a3b8', " << Plot::withBars("errors", "1", 2, 3, "#0284c7") << '\n';
+    return plot.svg();
+}
+
+//! Where the lengths were, seen from above (z-x), each coloured by its error over its limit, in the box that was calibrated. SVG.
+std::string drawErrorsInVolume(const Acceptance& a)
+{
+    Plot plot(WIDTH, HEIGHT);
+    std::vector<std::vector<double>> lengths, box;
+    for (const LengthResult& r : a.lengths)
+    {
+        for (size_t end : r.length.ends)
+        {
+            const cv::Point3d& X = a.points.points[end].X;
+            lengths.push_back({X.z, X.x, r.error/r.limit});
+        }
+        lengths.push_back({NONE, NONE, NONE});
+    }
+    if (a.volume.box)
+    {
+        const cv::Point3d& p = a.volume.box->least, & q = a.volume.box->most;
+        box = {{p.z, p.x}, {q.z, p.x}, {q.z, q.x}, {p.z, q.x}, {p.z, p.x}};
+    }
+    const std::string unit = a.unit.empty() ? "" : ", " + a.unit;
+    plot.data("lengths", lengths);
+    plot.data("box", box);
+    plot << "set xlabel " << Plot::quoted("z" + unit) << "\nset ylabel " << Plot::quoted("x" + unit)
+         << "\nset size ratio -1\nset cbrange [-1:1]\nset cblabel 'error over limit'\nset key off\nplot "
+         << (box.empty() ? "" : "$box using 1:2 with lines dashtype 2 linewidth 2 linecolor rgb '#475569', ")
+         << "$lengths using 1:2:3 with linespoints pointtype 7 pointsize 0.3 linewidth 2 linecolor palette\n";
+    return plot.svg();
+}
+
 const size_t LENGTHS_ON_PAGE = 12, BUDGET_ON_PAGE = 8, LONG_NAME = 34, LONG_COMMAND = 300;
 
 //! As much as there is room for.
@@ -51,19 +114,12 @@ PageList lengthsOf(const Acceptance& a)
     for (size_t i : lengthsOnPage(a))
     {
         const LengthResult& r = a.lengths[i];
-        PageValues row;
-        row.set("name", shortened(r.length.name, LONG_NAME));
         const int decimals = decimalsOf(r.U());
-        row.set("nominal", rounded(r.length.length, decimalsOf(r.length.U)));
-        row.set("measured", rounded(r.measured, decimals));
-        row.set("error", rounded(r.error, decimals, true));
-        row.set("U", rounded(r.U(), decimals));
-        row.set("k", format("%.2f", r.budget.k));
-        row.set("test_U", rounded(r.testU(), decimalsOf(r.testU())));
-        row.set("limit", format("%.6g", r.limit));
-        row.set("decision", textOf(r.decision) + (r.outside ? " *" : ""));
-        row.set("class", textOf(r.decision));
-        list.push_back(row);
+        list.push_back({{"name", shortened(r.length.name, LONG_NAME)}, {"nominal", rounded(r.length.length, decimalsOf(r.length.U))},
+                        {"measured", rounded(r.measured, decimals)}, {"error", rounded(r.error, decimals, true)},
+                        {"U", rounded(r.U(), decimals)}, {"k", format("%.2f", r.budget.k)},
+                        {"test_U", rounded(r.testU(), decimalsOf(r.testU()))}, {"limit", format("%.6g", r.limit)},
+                        {"decision", textOf(r.decision) + (r.outside ? " *" : "")}, {"class", textOf(r.decision)}});
     }
     return list;
 }
@@ -91,14 +147,10 @@ PageList budgetOf(const GumTable& table, const std::string& unit)
     PageList rows;
     for (const GumRow& row : rowsOnPage(table))
     {
-        PageValues entry;
-        entry.set("source", row.source);
-        entry.set("std", row.knownTo(unit));
-        entry.set("sensitivity", std::isnan(row.sensitivity) ? "" : format("%.3g", row.sensitivity));
-        entry.set("contribution", rounded(row.contribution, decimalsOf(table.u) + 1));
-        entry.set("share", format("%.1f", 100.*row.share));
-        entry.set("dof", std::isnan(row.dof) ? "" : dofText(row.dof));
-        rows.push_back(entry);
+        rows.push_back({{"source", row.source}, {"std", row.knownTo(unit)},
+                        {"sensitivity", std::isnan(row.sensitivity) ? "" : format("%.3g", row.sensitivity)},
+                        {"contribution", rounded(row.contribution, decimalsOf(table.u) + 1)},
+                        {"share", format("%.1f", 100.*row.share)}, {"dof", std::isnan(row.dof) ? "" : dofText(row.dof)}});
     }
     return rows;
 }
@@ -130,16 +182,84 @@ PageList inputsOf(const Certificate& c)
     PageList list;
     for (const CertificateInput& input : c.inputs)
     {
-        PageValues entry;
-        entry.set("what", input.what);
-        entry.set("name", input.name);
-        entry.set("sha256", input.sha256);
-        list.push_back(entry);
+        list.push_back({{"what", input.what}, {"name", input.name}, {"sha256", input.sha256}});
     }
     return list;
 }
 
 } // namespace
+
+static const size_t DAY = 10;               // letters of YYYY-MM-DD
+
+void CertificateLabel::addTo(OptionParser& parser)
+{
+    parser.add("--number", number, "of the certificate (default: made of what was read)");
+    parser.add("--date", date, "of the test, year-month-day (default: of the newest file that was read)");
+    parser.add("--issued", issued, "date of the certificate (default: today)");
+    parser.add("--serial", serial, "of cameras and windows: must be that of calib.yml, if it has one");
+    parser.add("--customer", customer, "for whom, with address");
+    parser.add("--laboratory", laboratory, "where");
+    parser.add("--address", address, "of the laboratory");
+    parser.add("--operator", person, "who tested");
+    parser.add("--authorised-by", approver, "who authorises the certificate");
+    parser.add("--country", country, "of the laboratory, two letters (ISO 3166-1), for --dcc");
+    parser.add("--standard", standard, "standard of length: kind, serial number, certificate");
+    parser.add("--traceability", traceability, "of the standard: who calibrated it, and to what");
+    parser.add("--environment", environment, "what was measured in: temperatures, medium");
+}
+
+void CertificateLabel::check() const
+{
+    for (const auto& day : {std::make_pair("--date", date), {"--issued", issued}})
+        if (!day.second.empty())
+        {
+            requireDate(day.second, day.first);
+            requirePast(day.second, day.first);
+        }
+    const bool isCountry = country.size() == 2 && std::all_of(country.begin(), country.end(), [](char c) { return c >= 'A' && c <= 'Z'; });
+    if (!country.empty() && !isCountry)
+        throw Failure("--country=" + country + ": give two capital letters, as in --country=DE");
+    for (const auto& text : {std::make_pair("--number", number), {"--serial", serial}, {"--customer", customer},
+                             {"--laboratory", laboratory}, {"--address", address}, {"--operator", person}, {"--authorised-by", approver},
+                             {"--standard", standard}, {"--traceability", traceability}, {"--environment", environment}})
+        if (!isUtf8(text.second))
+            throw Failure(std::string(text.first) + ": a letter is not UTF-8; is the terminal, or the file of --config, in Latin-1?");
+}
+
+CertificateLabel CertificateLabel::completed(const Calibration& calibration, const std::string& filename,
+                                             const std::vector<std::string>& inputs) const
+{
+    CertificateLabel label = *this;
+    const std::string& own = calibration.label.serial;
+    if (!serial.empty() && !own.empty() && serial != own)
+        throw Failure("--serial=" + serial + ": '" + filename + "' is of '" + own + "'; leave it out, or give the calibration of this one");
+    if (serial.empty())
+        label.serial = own;
+    if (date.empty())
+        label.date = timeOfFiles(inputs).substr(0, DAY);
+    const std::string ofTest = date.empty() ? "the test is of " + label.date + " (SOURCE_DATE_EPOCH, or the newest file)"
+                                            : "--date=" + date;
+    requirePast(label.date, date.empty() ? "date of the newest file" : "--date");
+    if (issued.empty())         // today; where the sun rises first, the test may be of tomorrow
+        label.issued = std::max(timeOfNow().substr(0, DAY), label.date);
+    if (label.issued < label.date)
+        throw Failure("--issued=" + issued + ": " + ofTest + "; a certificate is of a test that was");
+    const std::string calibrated = calibration.time.substr(0, DAY);
+    if (calibrated.size() == DAY && label.date < calibrated)
+        throw Failure(ofTest + ": '" + filename + "' was calibrated later, on " + calibrated
+                      + "; a test is of a calibration that there is");
+    return label;
+}
+
+std::vector<std::string> CertificateLabel::missing() const
+{
+    std::vector<std::string> names;
+    for (const auto& entry : {std::make_pair("laboratory", laboratory), {"its address", address}, {"who authorises", approver},
+                              {"standard", standard}, {"its traceability", traceability}})
+        if (entry.second.empty())
+            names.push_back(entry.first);
+    return names;
+}
 
 std::string Certificate::number() const
 {

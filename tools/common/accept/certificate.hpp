@@ -5,10 +5,35 @@
 #define REFRACT_TOOLS_CERTIFICATE_HPP
 
 #include "accept/acceptance.hpp"
-#include "accept/certificate_label.hpp"
+#include "calibrate/calib_file.hpp"
+#include <string>
 
 /* The certificate of an acceptance test, to print and sign, and for machines. The same input gives the same bytes. */
 namespace tools {
+
+class OptionParser;
+
+//! Who, what and when of a certificate, as the caller says; empty where nobody said.
+struct CertificateLabel
+{
+    std::string number;             //!< of the certificate; empty: made of the hashes of the inputs
+    std::string date, issued;       //!< of the test, of the certificate, YYYY-MM-DD
+    std::string serial;             //!< of the cameras and windows
+    std::string customer, laboratory, address, person, approver;
+    std::string country;            //!< of the laboratory, ISO 3166-1, two letters
+    std::string standard;           //!< of length: kind, serial number, certificate
+    std::string traceability;       //!< of the standard: to which realisation of the metre
+    std::string environment;        //!< air, temperature, water
+
+    void addTo(OptionParser& parser);
+    //! Throws Failure for a text or a date that no certificate may have.
+    void check() const;
+    /** With what the calibration and the files say where nobody did. Throws Failure if they say another thing: a test of other windows, or
+    before its calibration, or to come. @param filename of the calibration @param inputs that were read */
+    CertificateLabel completed(const Calibration& calibration, const std::string& filename, const std::vector<std::string>& inputs) const;
+    //! "laboratory, standard": what an accredited certificate has, and this one lacks.
+    std::vector<std::string> missing() const;
+};
 
 //! A file that the result was made of.
 struct CertificateInput

@@ -4,7 +4,7 @@
 #include "accept/certificate.hpp"
 #include "accept/dcc_template.hpp"
 #include "calibrate/units.hpp"
-#include "console/rounded.hpp"
+#include "console/numbers.hpp"
 #include "console/table.hpp"
 #include "report/page_template.hpp"
 #include <algorithm>
@@ -100,14 +100,10 @@ std::string certificateDcc(const Certificate& c)
     PageList inputs, remarks;
     for (const CertificateInput& input : c.inputs)
     {
-        PageValues entry;
-        entry.set("what", input.what);
-        entry.set("name", textOf(input.name));
-        entry.set("sha256", input.sha256);
-        inputs.push_back(entry);
+        inputs.push_back({{"what", input.what}, {"name", textOf(input.name)}, {"sha256", input.sha256}});
     }
     for (const std::string& sentence : a.remarks())
-        remarks.emplace_back("text", textOf(sentence));
+        remarks.push_back({{"text", textOf(sentence)}});
     page.set("inputs", inputs);
     page.set("remarks", remarks);
     return renderPage("the DCC", DCC_TEMPLATE, page);

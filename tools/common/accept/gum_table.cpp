@@ -6,8 +6,8 @@
 #include "calibrate/parameter_columns.hpp"
 #include "console/failure.hpp"
 #include "console/table.hpp"
-#include "measure/student_t.hpp"
 #include "math/dense.hpp"
+#include "measure/distributions.hpp"
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -5,7 +5,8 @@
 #define REFRACT_TOOLS_TEST_POINTS_HPP
 
 #include "calibrate/calib_file.hpp"
-#include "measure/joint_error.hpp"
+#include "measure/point_error.hpp"
+#include "target/target.hpp"
 
 /* The measured points that an acceptance test is made of. */
 namespace tools {
@@ -40,6 +41,30 @@ bool requireOtherImages(const TestPoints& points, const std::vector<std::string>
 
 //! Those that have the name of an image that calibrated: all that can be told of points without pixels.
 std::vector<std::string> namesThatCalibrated(const std::vector<std::string>& images, const Calibration& calibration);
+
+//! Boards that a rig saw, measured as refract_measure does, and the files in which they were seen.
+struct BoardPoints
+{
+    TestPoints points;
+    std::vector<std::string> files;
+};
+
+/** @param images of each camera, a glob or a file of points @param pixelSigma of their noise
+Throws Failure if no two cameras have images of one name with the board, or no point has an answer. */
+BoardPoints measureBoards(const Calibration& calibration, const std::vector<std::string>& images, const Target& target, double pixelSigma,
+                          bool quiet);
+
+//! The noise of a pixel coordinate of a test, and what its reader should know of it, a sentence each.
+struct PixelNoise
+{
+    double sigma;
+    std::vector<std::string> remarks;
+};
+
+/** As the caller states it, or as the calibration's residuals have it; more where the points' own rays miss each other by more. Throws
+Failure where they refute what is stated.
+@param stated --pixel-sigma; 0: not stated */
+PixelNoise pixelNoiseOf(const Calibration& calibration, const TestPoints& points, double stated);
 
 } // namespace tools
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "assess/change.hpp"
-#include "calibrate/estimated_parameters.hpp"
+#include "calibrate/parameter_columns.hpp"
 #include "calibrate/units.hpp"
 #include "calibrate/window_face.hpp"
 #include <algorithm>

@@ -3,9 +3,9 @@
 
 #include "assess/change_naming.hpp"
 #include "console/failure.hpp"
-#include "diagnose/ranking.hpp"
+#include "diagnose/hypothesis_tests.hpp"
 #include "math/dense.hpp"
-#include "measure/f_distribution.hpp"
+#include "measure/distributions.hpp"
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "assess/check_input.hpp"
-#include "measure/measurement.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "calibrate/window_face.hpp"
 #include "console/failure.hpp"
+#include "measure/measurement.hpp"
 
 using namespace cv;
 using namespace cv::refract;
@@ -31,6 +31,14 @@ std::vector<int> columnsIn(const RigModel& from, const RigModel& to)
     for (int i = 0; i < TARGET_ERRORS && !from.targetCovariance.empty(); i++)
         columns.push_back(columnCount(to) + i);
     return columns;
+}
+
+//! Independent of all else, as it is another piece.
+void replaceVariance(Mat& covariance, int column, double variance)
+{
+    covariance.row(column).setTo(0.);
+    covariance.col(column).setTo(0.);
+    covariance.at<double>(column, column) = variance;
 }
 
 } // namespace
@@ -82,6 +90,29 @@ CheckInput withTargetColumns(const CheckInput& input, const Mat& covariance)
     if (!input.covariance.empty())
         input.covariance.copyTo(result.covariance(Rect(0, 0, count, count)));
     result.rig.targetCovariance.copyTo(result.covariance(Rect(count, count, TARGET_ERRORS, TARGET_ERRORS)));
+    return result;
+}
+
+CheckInput withNewPanes(const CheckInput& input, const PaneStd& std)
+{
+    CheckInput result = withWedges(input);
+    for (const Ptr<RefractiveCamera>& camera : result.rig.cameras)
+    {
+        GlassWindow window = camera->window();
+        window.wedge.assign(window.wedge.size(), Vec2d());
+        camera->setWindow(window);
+    }
+    for (int k = 0; k < (int)result.rig.cameras.size(); k++)
+    {
+        const ParameterColumns at = columnsOf(result.rig, k);
+        for (int i = 0; i < at.layers; i++)
+        {
+            replaceVariance(result.covariance, at.thickness + i, 2.*std.thickness*std.thickness);
+            replaceVariance(result.covariance, at.index + i, 2.*std.index*std.index);
+        }
+        for (int i = at.wedge; i < at.curvature; i++)
+            replaceVariance(result.covariance, i, std.wedge*std.wedge);
+    }
     return result;
 }
 

@@ -4,8 +4,8 @@
 #ifndef REFRACT_TOOLS_CHECK_INPUT_HPP
 #define REFRACT_TOOLS_CHECK_INPUT_HPP
 
-#include "measure/eigen_matrix.hpp"
 #include "calibrate/rig_model.hpp"
+#include "measure/eigen_matrix.hpp"
 
 /* A calibration as a check of new images starts from it. */
 namespace tools {
@@ -27,6 +27,17 @@ CheckInput withWedges(const CheckInput& input);
 
 //! The same with columns for the scale and the motion of the targets. @param covariance of these; empty: they are exact
 CheckInput withTargetColumns(const CheckInput& input, const cv::Mat& covariance);
+
+//! How much panes of one kind differ from each other, standard deviations.
+struct PaneStd
+{
+    double thickness, index;
+    double wedge;                   //!< of each of its two angles, about 0, radians
+};
+
+/** A calibration whose panes were exchanged since for others of the same kind. Thickness and index are the calibrated ones with the
+difference of two panes; wedges are about 0. */
+CheckInput withNewPanes(const CheckInput& input, const PaneStd& std);
 
 } // namespace tools
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "assess/check_level.hpp"
-#include "measure/f_distribution.hpp"
+#include "measure/distributions.hpp"
 #include "math/dense.hpp"
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "assess/check_problem.hpp"
-#include "console/failure.hpp"
 #include "math/dense.hpp"
 #include "measure/rig_vector.hpp"
 #include <cmath>

@@ -2,13 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "assess/collected_findings.hpp"
-#include "calibrate/estimated_parameters.hpp"
-#include "calibrate/window_face.hpp"
-#include "measure/f_distribution.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "calibrate/pinhole_camera.hpp"
+#include "calibrate/window_face.hpp"
 #include "console/numbers.hpp"
 #include "console/table.hpp"
+#include "measure/distributions.hpp"
 #include <algorithm>
 #include <cmath>
 

@@ -2,19 +2,204 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "assess/given_images.hpp"
-#include "assess/live_limits.hpp"
+#include "assess/advice.hpp"
 #include "calibrate/data_checks.hpp"
-#include "calibrate/few_points.hpp"
+#include "calibrate/fit.hpp"
+#include "calibrate/outliers.hpp"
+#include "calibrate/parameter_columns.hpp"
+#include "calibrate/pinhole_camera.hpp"
 #include "calibrate/poses_file.hpp"
 #include "console/failure.hpp"
 #include "console/numbers.hpp"
-#include "console/view_names.hpp"
+#include "diagnose/diagnosis.hpp"
+#include "diagnose/explained_error.hpp"
+#include "diagnose/fit_quality.hpp"
+#include "measure/point_error.hpp"
 #include <algorithm>
 #include <iostream>
 
 using namespace cv::refract;
+using cv::format;
 
 namespace tools {
+
+namespace {
+
+const int FEW_ITERATIONS = 30;          // where a wrong value is known to be, a fit within what is known of it may creep;
+const int FEW_ROBUST_ITERATIONS = 15;   // and where nothing fits, each of many
+
+//! @param only see PlainFit
+void start(RigCalibration& c, bool robust, int maxIterations, std::optional<RigModel>& only)
+{
+    if (robust)
+        c.outliers = startWithoutOutliers(c.data, c.options, c.start, c.lensSources, maxIterations, only);
+    else
+        c.start = startModel(c.data, c.options, c.lensSources, only ? &*only : nullptr);
+}
+
+void fit(RigCalibration& c, const std::function<void()>& step, int maxIterations, bool isPlaced)
+{
+    c.fit = fitAllImages(c.data, c.start, c.lensSources, c.options.flags, maxIterations, isPlaced);
+    c.residuals = residualsOf(c.data, c.fit);
+    step();
+    c.baselines = computeBaselines(c.data, c.start, c.lensSources);
+    step();
+}
+
+//! The lens of a target with depth is searched for from many focal lengths, half a minute if its points are wrong.
+bool isSlowToStart(const CalibrationInput& input)
+{
+    bool solid = false, known = true;
+    for (const View& view : input.data.views)
+        solid = solid || isSolid(view.objectPoints);
+    for (int k = 0; k < input.data.cameraCount; k++)
+        known = known && input.options.known[k];
+    return solid && !known;
+}
+
+//! Not of what was given, but of where a fit ended.
+bool isOfBadFit(CalibrationError::Cause cause)
+{
+    return cause == CalibrationError::NOT_CONVERGED || cause == CalibrationError::UNDETERMINED
+        || cause == CalibrationError::PAIRS_CONTRADICT || cause == CalibrationError::PAIRS_SWAPPED
+        || cause == CalibrationError::TOO_FEW_INLIERS;
+}
+
+const int LEAST_PAIRS = 3;              // of each camera: the noise is not known from fewer
+const int LEAST_GLASS_ONLY = 8;         // without pairs
+
+bool areFew(const RigData& data)
+{
+    for (int k = 0; k < data.cameraCount; k++)
+    {
+        int glass = 0;
+        for (const View& view : data.views)
+            glass += view.hasGlass(k);
+        if (data.countPairs(k) < LEAST_PAIRS && glass < LEAST_GLASS_ONLY)
+            return true;
+    }
+    return false;
+}
+
+void fitQuickly(RigCalibration& c)
+{
+    c.outliers = startWithoutOutliers(c.data, c.options, c.start, c.lensSources);
+    c.fit = fitAllImages(c.data, c.start, c.lensSources, c.options.flags);
+}
+
+void add(Progressed& progressed, const std::string& text) { progressed.words += (progressed.words.empty() ? "" : ", ") + text; }
+
+//! True if there are limits and all are met.
+bool compareWithLimits(const RigCalibration& c, Progressed& progressed)
+{
+    bool met = c.limits.normalStdDeg > 0 || !c.limits.errors.empty();
+    for (int k = 0; k < c.data.cameraCount && c.limits.normalStdDeg > 0; k++)
+    {
+        const double std = windowStd(c.fit, k).normalDeg[0];
+        met = met && std <= c.limits.normalStdDeg;
+        add(progressed, (c.data.cameraCount > 1 ? format("camera %d: ", k + 1) : "") + format("normal +- %.3g of %g deg", std,
+                                                                                             c.limits.normalStdDeg));
+    }
+    Calibration calibration = calibrationOf(c.fit.rig);
+    calibration.covariance = c.fit.covariance;
+    for (const ErrorLimit& limit : c.limits.errors)
+    {
+        const double error = mapErrors(calibration, limit.range, c.fit.sigma, ERROR_MAP_COLUMNS).worst();
+        met = met && error <= limit.error;
+        add(progressed, format("error at %g %s %.3g of %g", limit.range, c.unit.c_str(), error, limit.error));
+    }
+    return met;
+}
+
+bool isNextWorthLittle(const RigCalibration& c, double leastGain, Progressed& progressed)
+{
+    const Advice advice = adviseImages(c);
+    if (advice.pairs.empty())
+        return false;
+    const double gain = 1 - advice.pairs[0].quality.calibrationPart/advice.now.calibrationPart;
+    add(progressed, format("the best next pair would take %.1f %% off the calibration's part of a point's error", 100*gain));
+    return gain < leastGain;
+}
+
+} // namespace
+
+void calibrateImages(RigCalibration& c, bool robust, const std::function<void()>& step)
+{
+    const CalibrationInput input{c.data, c.options, c.square, c.notices};
+    if (!(c.options.flags & GLASS_USE_POSES))
+        cameraLinks(c.data, false);         // throws where there are none: the first that cannot be, before causes of it are looked for
+    // A wrong value makes good points look wrong, and the search for these long: so look first.
+    PlainFit plain;
+    bool fitsPlainly = true, mayFit = true;
+    if (!isSlowToStart(input))
+    {
+        const MixUps mixUps = findMixUps(input);
+        std::optional<RigModel> only;
+        const bool lookedAtImages = requireNoMixUp(input, mixUps, only);
+        plain = fitPlainly(input, only);
+        const bool suspicious = isSuspicious(input, plain);
+        fitsPlainly = isSound(input, plain, suspicious);
+        if (suspicious)
+            requireNoCause(input, mixUps, plain, !lookedAtImages);
+        if (!fitsPlainly || plain.explained)
+            plain.only.reset();
+    }
+    const auto explained = [&](const auto& error, const std::string& reason) {
+        return plain.explained ? reason + ": " + plain.explained->sentence : explainError(error, input); };
+    try
+    {
+        start(c, robust && !plain.explained, fitsPlainly ? MAX_ROBUST_ITERATIONS : FEW_ROBUST_ITERATIONS, plain.only);
+        step();
+        // No mistake that is known of explains it. If wrong points do not either, a fit would creep for minutes.
+        mayFit = fitsPlainly || medianErrorOfFit(c.data, c.options) < largestSoundError(c.data);
+        const int iterations = !mayFit ? 1 : plain.explained ? FEW_ITERATIONS : MAX_ITERATIONS;        // one tells what has no fit at all
+        fit(c, step, iterations, plain.only.has_value());
+    }
+    catch (const CalibrationError& e)
+    {
+        if (!mayFit && isOfBadFit(e.cause))
+            refuseUnexplained(input, plain);
+        throw Failure(mayFit ? explained(e, e.reason) : e.err);
+    }
+    catch (const cv::Exception& e)
+    {
+        throw Failure(mayFit ? explained(e.err, e.err) : e.err);
+    }
+    catch (const Failure& e)
+    {
+        if (isSlowToStart(input) || !mayFit)
+            throw;
+        throw Failure(explained(std::string(e.what()), e.what()));
+    }
+    if (!mayFit)
+        refuseUnexplained(input, plain);
+    requirePlausible(c.data, c.residuals, rmsOfSeparateFits(c.baselines, c.lensSources), input);
+}
+
+/** Whether the images that came so far are enough: the limits of normals and points are met by the covariance of a quick fit of them, or
+the best next pair would make points better by less than was asked for. What cannot be fitted yet is not enough.
+@param c with data, options and limits; taken by value, as it is fitted
+@param leastGain share of the calibration's part of a point's error that the next pair must take off to be waited for; 0: not asked */
+static Progressed progressOf(RigCalibration c, double leastGain)
+{
+    Progressed progressed;
+    if (areFew(c.data))
+        return progressed;
+    try
+    {
+        fitQuickly(c);
+        progressed.isEnough = compareWithLimits(c, progressed);
+        if (!progressed.isEnough && leastGain > 0)
+            progressed.isEnough = isNextWorthLittle(c, leastGain, progressed);
+    }
+    catch (const std::exception&)       // cv::Exception is one: these images do not determine all yet
+    {
+        return {};
+    }
+    if (!progressed.words.empty())
+        progressed.words = "so far: " + progressed.words + (progressed.isEnough ? ": enough" : "");
+    return progressed;
+}
 
 //! The images that the views of the sets came from; none for corners that came from a file.
 static std::vector<Photo> photosOf(const RigImages& sets)

@@ -10,6 +10,16 @@ namespace tools {
 
 namespace {
 
+//! The source of the budget that has the largest share of a point's error; null: there is no budget.
+const BudgetRow* largestShare(const Assessment& a)
+{
+    const BudgetRow* largest = nullptr;
+    for (size_t i = 0; i + 1 < a.budget.size(); i++)        // the last is the total
+        if (std::isfinite(a.budget[i].share) && (!largest || a.budget[i].share > largest->share))
+            largest = &a.budget[i];
+    return largest;
+}
+
 //! Of the camera that has the fewest.
 int fewestPairs(const RigCalibration& c)
 {
@@ -75,15 +85,6 @@ std::string toMeet(const LimitCheck& limit, const RigCalibration& c, const Asses
 }
 
 } // namespace
-
-const BudgetRow* largestShare(const Assessment& a)
-{
-    const BudgetRow* largest = nullptr;
-    for (size_t i = 0; i + 1 < a.budget.size(); i++)        // the last is the total
-        if (std::isfinite(a.budget[i].share) && (!largest || a.budget[i].share > largest->share))
-            largest = &a.budget[i];
-    return largest;
-}
 
 std::string nextStep(const RigCalibration& c, const Assessment& a, const Findings& f)
 {

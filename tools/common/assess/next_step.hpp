@@ -8,9 +8,6 @@
 
 namespace tools {
 
-//! The source of the budget that has the largest share of a point's error; null: there is no budget.
-const BudgetRow* largestShare(const Assessment& assessment);
-
 //! What to do with the result: correct a value, take images, know a value better, or measure. Half a sentence.
 std::string nextStep(const RigCalibration& calibration, const Assessment& assessment, const Findings& findings);
 

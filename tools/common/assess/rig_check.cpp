@@ -3,13 +3,13 @@
 
 #include "assess/rig_check.hpp"
 #include "assess/change_naming.hpp"
-#include "measure/image_noise.hpp"
 #include "assess/swapped_images.hpp"
 #include "calibrate/parameter_columns.hpp"
-#include "measure/f_distribution.hpp"
 #include "console/failure.hpp"
-#include "console/lines.hpp"
+#include "console/table.hpp"
 #include "math/dense.hpp"
+#include "measure/distributions.hpp"
+#include "measure/image_noise.hpp"
 #include <algorithm>
 #include <cmath>
 #include <functional>

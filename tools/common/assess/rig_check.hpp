@@ -5,15 +5,13 @@
 #define REFRACT_TOOLS_RIG_CHECK_HPP
 
 #include "assess/changed_value.hpp"
-#include "assess/charted_score.hpp"
 #include "assess/check_input.hpp"
 #include "calibrate/rig_data.hpp"
 #include "measure/view_observations.hpp"
-#include <limits>
 
 /* Has anything changed since the calibration, and what? From a few new images of the target, or of a scene. Each hypothesis of the table
 (change.hpp) is freed alone; under "nothing changed" its gain in chi^2 follows F. If one of them is less probable than all of them
-together ever are at the rate of false alarms, something has changed. What it is, Schwarz's criterion tells (ranking.hpp). */
+together ever are at the rate of false alarms, something has changed. What it is, Schwarz's criterion tells (hypothesis_tests.hpp). */
 namespace tools {
 
 //! A window, freed alone.

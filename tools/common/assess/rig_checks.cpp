@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "assess/rig_checks.hpp"
-#include "calibrate/image_fit.hpp"
-#include "calibrate/pinhole_rig.hpp"
+#include "calibrate/fit.hpp"
+#include "calibrate/pinhole_camera.hpp"
 #include "calibrate/refit.hpp"
 #include "calibrate/window_face.hpp"
 #include "console/progress.hpp"

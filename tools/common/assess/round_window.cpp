@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "assess/round_window.hpp"
-#include "calibrate/estimated_parameters.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "calibrate/window_face.hpp"
 #include "console/table.hpp"
@@ -86,7 +85,7 @@ std::string placeInWords(const RigCalibration& c, int camera)
     const GlassWindow window = c.fit.rig.cameras[camera]->window();
     if (isRound(window))
         return plusMinus(offsetOf(window), offsetStdOf(c.fit, camera, window)) + " " + c.unit;
-    return plusMinus(std::acos(std::min(1., window.normal[2]))*180./CV_PI, windowStd(c.fit, camera).normalDeg[0]) + " degrees";
+    return plusMinus(tiltDegrees(window), windowStd(c.fit, camera).normalDeg[0]) + " degrees";
 }
 
 } // namespace tools

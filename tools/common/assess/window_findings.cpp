@@ -3,7 +3,6 @@
 
 #include "assess/collected_findings.hpp"
 #include "assess/round_window.hpp"
-#include "calibrate/estimated_parameters.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "calibrate/window_face.hpp"
 #include "console/table.hpp"

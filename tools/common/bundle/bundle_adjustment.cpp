@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "bundle/bundle_adjustment.hpp"
-#include "measure/rig_vector.hpp"
-#include "calibrate/estimated_parameters.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "console/failure.hpp"
+#include "measure/rig_vector.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -5,9 +5,14 @@
 #define REFRACT_TOOLS_BUNDLE_FINDINGS_HPP
 
 #include "bundle/bundle_adjustment.hpp"
+#include "bundle/bundle_start.hpp"
 #include <functional>
 
 namespace tools {
+
+/** Throws Failure if the images of one camera are of later or earlier moments than those of the others: if rays meet far better after
+some rows of the table. An adjustment to such matches creeps. Tables without images have no moments. */
+void requireSameMoments(const BundleStart& start, const Matches& matches);
 
 //! How far a camera's window or place is from the start, and how well it is known.
 struct Correction

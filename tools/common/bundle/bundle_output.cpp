@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "bundle/bundle_output.hpp"
-#include "calibrate/estimated_parameters.hpp"
+#include "calibrate/parameter_columns.hpp"
 #include "console/csv.hpp"
-#include "console/median.hpp"
+#include "console/numbers.hpp"
 #include "console/table.hpp"
 
 #include <algorithm>

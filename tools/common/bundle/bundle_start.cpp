@@ -7,7 +7,7 @@
 #include "calibrate/units.hpp"
 #include "calibrate/window_face.hpp"
 #include "console/failure.hpp"
-#include "console/median.hpp"
+#include "console/numbers.hpp"
 #include "console/table.hpp"
 
 #include <algorithm>

@@ -9,11 +9,8 @@
 #include "console/keys.hpp"
 #include "formats/foreign_rig.hpp"
 
-#include <sys/stat.h>
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <ctime>
 #include <filesystem>
 
 namespace tools {
@@ -214,33 +211,12 @@ int firstParameter(const std::vector<cv::Ptr<RefractiveCamera>>& cameras, size_t
     return first;
 }
 
-std::time_t newestOf(const std::vector<std::string>& files)
-{
-    std::time_t newest = 0;
-    struct stat status;
-    for (const std::string& file : files)
-        if (stat(file.c_str(), &status) == 0)
-            newest = std::max(newest, status.st_mtime);
-    return newest;
-}
-
 } // namespace
 
 void Calibration::add(const CameraCalibration& camera, const RigidTransform& cam_from_cam1)
 {
     cameras.push_back(camera);
     extrinsics.push_back(cam_from_cam1);
-}
-
-std::string timeOfFiles(const std::vector<std::string>& inputs)
-{
-    const char* epoch = std::getenv("SOURCE_DATE_EPOCH");
-    const std::time_t time = epoch && *epoch ? (std::time_t)std::strtoll(epoch, nullptr, 10) : newestOf(inputs);
-    std::tm parts = {};
-    gmtime_r(&time, &parts);
-    char text[32];
-    std::strftime(text, sizeof(text), "%Y-%m-%dT%H:%M:%SZ", &parts);
-    return text;
 }
 
 bool isOfRig(const std::string& filename)
@@ -344,6 +320,14 @@ void warnOfContradictions(const Calibration& calibration, const std::string& fil
     if (!calibration.contradictions.empty())
         command.warn("'" + filename + "' was marked as not usable when it was made, and the errors of its results may be larger than "
                      "their +-: " + calibration.contradictions[0] + "; calibrate again with the right values");
+}
+
+Calibration readCalibration(const std::string& filename, bool noWindow, const Command& command, const std::string& option)
+{
+    const Calibration calibration = readCalibration(filename);
+    requireWindows(calibration, filename, noWindow, option);
+    warnOfContradictions(calibration, filename, command);
+    return calibration;
 }
 
 void writeCameras(FileStorage& fs, const Calibration& calibration)

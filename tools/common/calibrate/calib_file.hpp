@@ -4,10 +4,10 @@
 #ifndef REFRACT_TOOLS_CALIB_FILE_HPP
 #define REFRACT_TOOLS_CALIB_FILE_HPP
 
-#include "calibrate/device_label.hpp"
 #include "calibrate/provenance.hpp"
 #include "calibrate/rigid_transform.hpp"
 #include "console/images.hpp"
+#include "console/times.hpp"
 #include <opencv2/refract.hpp>
 #include <string>
 #include <vector>
@@ -94,6 +94,10 @@ void requireWindows(const Calibration& calibration, const std::string& filename,
 //! Warns the user of a calibration that its own images contradict.
 void warnOfContradictions(const Calibration& calibration, const std::string& filename, const Command& command);
 
+//! All three: of a rig to work with.
+Calibration readCalibration(const std::string& filename, bool noWindow, const Command& command,
+                            const std::string& option = "--no-window");
+
 //! A lens from a file, and its covariance.
 struct KnownLens
 {
@@ -113,10 +117,6 @@ void writeCameras(cv::FileStorage& fs, const Calibration& calibration);
 
 //! Writes the complete file or none. Adds versions.
 void writeCalibration(const std::string& filename, const Calibration& calibration);
-
-/** The time that outputs carry, ISO 8601 UTC: that of SOURCE_DATE_EPOCH, if set, else of the newest input, so that the same
-input gives the same bytes. */
-std::string timeOfFiles(const std::vector<std::string>& inputs);
 
 } // namespace tools
 

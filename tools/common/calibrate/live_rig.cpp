@@ -8,7 +8,6 @@
 #include "console/options.hpp"
 #include "target/board_quality.hpp"
 #include "target/new_files.hpp"
-#include "target/next_view.hpp"
 
 #include <algorithm>
 #include <chrono>

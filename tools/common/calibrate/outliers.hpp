@@ -4,7 +4,7 @@
 #ifndef REFRACT_TOOLS_OUTLIERS_HPP
 #define REFRACT_TOOLS_OUTLIERS_HPP
 
-#include "calibrate/image_fit.hpp"
+#include "calibrate/fit.hpp"
 #include "calibrate/starting_model.hpp"
 #include <optional>
 
@@ -48,6 +48,14 @@ Outliers startWithoutOutliers(RigData& data, const RigOptions& options, RigModel
                               int maxIterations, std::optional<RigModel>& only);
 Outliers startWithoutOutliers(RigData& data, const RigOptions& options, RigModel& start,
                               std::vector<LensSource>& lensSources, int maxIterations = MAX_ROBUST_ITERATIONS);
+
+/* Images that have no pose: they show too few points of the target, or points on one line. */
+
+/** Removes them from the sets.
+@param target null: all points have coordinates of their own
+@return what was removed; images without any point are not listed
+Throws Failure where nothing would be left of a camera's direct images, or of those through the window. */
+std::vector<Rejected> leaveOutFewPoints(const Target* target, RigImages& sets);
 
 } // namespace tools
 

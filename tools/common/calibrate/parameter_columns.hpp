@@ -35,16 +35,38 @@ int columnCount(const RigModel& rig);
 
 //! These rows and columns of a matrix.
 cv::Mat partOf(const cv::Mat& matrix, const std::vector<int>& rows, const std::vector<int>& columns);
-
-//! Principal standard deviations of three columns, larger first.
-std::vector<double> principalStd(const cv::Mat& covariance, int column);
 //! Two of the normal of a camera's window, degrees; empty: it has none.
 std::vector<double> normalStdDeg(const cv::Mat& covariance, const RigModel& rig, int camera);
-//! Three of the centre of its dome or tube; empty: it has none.
-std::vector<double> centerStd(const cv::Mat& covariance, const RigModel& rig, int camera);
 
 //! How well it is known where a window is: the larger of normalStdDeg or of centerStd.
 double placeStd(const cv::Mat& covariance, const RigModel& rig, int camera);
+
+/* What a fit has estimated, by name and with its standard deviation. */
+
+struct Fit;
+
+//! A number that was estimated.
+struct EstimatedParameter
+{
+    std::string name;
+    int column;                 //!< of Fit::covariance
+    double value, std;
+    bool isNormal;              //!< or a tube's axis
+};
+//! Whether a column is of such a number.
+bool followsOthers(const cv::refract::GlassWindow& window, const ParameterColumns& at, int column);
+
+//! Window parameters that were free, camera after camera; of directions and of a tube's centre two, of a shared window once.
+std::vector<EstimatedParameter> estimatedWindowParameters(const Fit& fit);
+
+//! Lens parameters and R (rotation vector), T of each camera but the first that were free.
+std::vector<EstimatedParameter> estimatedRigParameters(const Fit& fit);
+
+//! One standard deviation of what was free in the window of a camera.
+WindowStd windowStd(const Fit& fit, int camera);
+
+//! Of splined lenses nothing is estimated, --free=intrinsics or not.
+bool isSplined(const cv::refract::RefractiveCamera& lens);
 
 } // namespace tools
 

@@ -5,13 +5,29 @@
 #define REFRACT_TOOLS_PROVENANCE_HPP
 
 #include <opencv2/core.hpp>
+#include <opencv2/core/persistence.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 /* Where a calibration comes from, as calib.yml keeps it for whoever tests it later: calibration_images (which must not test it),
 calibrated_volume (beyond which it extrapolates) and uncertainty_sources (what its covariance is made of). */
 namespace tools {
+
+//! Names and notes of the calibrated device.
+struct Label
+{
+    std::string serial;                                         //!< of the window; may be empty
+    std::vector<std::pair<std::string, std::string>> notes;     //!< key and free text
+};
+
+//! "key=text" -> a note; the key becomes a name in YAML and JSON.
+std::pair<std::string, std::string> parseNote(const std::string& text);
+
+//! The keys window_serial and notes of a calibration file.
+Label readLabel(const cv::FileStorage& fs);
+void writeLabel(cv::FileStorage& fs, const Label& label);
 
 //! An image in which the target was found.
 struct CalibrationImage

@@ -64,6 +64,18 @@ std::vector<const DetectedImages*> RigImages::all() const
     return sets;
 }
 
+void RigImages::nameSingles()
+{
+    std::string name;
+    for (const DetectedImages* set : all())
+        if (set->files.size() > 1 || set->images.size() > 1)
+            return;
+    for (PerCamera<DetectedImages>* images : {&glass, &direct})
+        for (DetectedImages& set : *images)
+            for (DetectedImage& image : set.images)
+                image.stem = name = name.empty() ? image.stem : name;
+}
+
 static int countTaken(const PerCamera<std::vector<Point2d>>& images)
 {
     return (int)std::count_if(images.begin(), images.end(), [](const std::vector<Point2d>& pixels) { return !pixels.empty(); });

@@ -48,6 +48,7 @@ struct RigImages
     PerCamera<DetectedImages> direct, glass;
 
     std::vector<const DetectedImages*> all() const; //!< direct and glass of camera 1, of camera 2, ...
+    void nameSingles();                             //!< one image for each camera: they are one view, whatever their names
 };
 
 //! readDetectedImages of each source; imageSize[c]: of each camera.

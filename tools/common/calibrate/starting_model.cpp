@@ -6,7 +6,7 @@
 #include "calibrate/parameter_columns.hpp"
 #include "calibrate/pinhole_camera.hpp"
 #include "console/failure.hpp"
-#include "console/median.hpp"
+#include "console/numbers.hpp"
 #include "console/table.hpp"
 #include <opencv2/calib3d.hpp>
 #include <algorithm>

@@ -3,6 +3,7 @@
 
 #include "calibrate/window_face.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -25,6 +26,8 @@ const char* nameOfShape(const GlassWindow& window)
     default: return "window";
     }
 }
+
+double tiltDegrees(const GlassWindow& window) { return std::acos(std::min(1., window.normal[2]))*180./CV_PI; }
 
 double offsetOf(const GlassWindow& window)
 {

@@ -51,6 +51,9 @@ inline bool isRound(const cv::refract::GlassWindow& window)
     return window.shape == cv::refract::WINDOW_DOME || window.shape == cv::refract::WINDOW_TUBE;
 }
 
+//! Of a flat window against the optical axis.
+double tiltDegrees(const cv::refract::GlassWindow& window);
+
 /** How far the centre of projection is from a dome's centre, or from a tube's axis. There it is in the middle, and rays are hardly
 refracted, in a dome not at all. */
 double offsetOf(const cv::refract::GlassWindow& window);

@@ -8,7 +8,6 @@
 #include "console/table.hpp"
 #include "match/depth_range.hpp"
 #include "match/scene_check.hpp"
-#include <algorithm>
 
 using namespace cv::refract;
 
@@ -38,19 +37,6 @@ CheckResult checkMatches(const CheckOptions& o, const SceneMatches& matches, con
 {
     input.sigma = matches.good.matches.usualStd();          // the noise of features, which is not that of a target's points
     return checkScene(input, observationsOf(input.rig, matches.good.matches), o.falseAlarmOfCheck(), calibration.unit);
-}
-
-//! If there is one image for each camera, they are one view, whatever their names.
-void nameSingles(RigImages& sets)
-{
-    const std::vector<const DetectedImages*> all = sets.all();
-    if (std::any_of(all.begin(), all.end(), [](const DetectedImages* set) { return set->files.size() > 1 || set->images.size() > 1; }))
-        return;
-    const std::string name = stemOf(sets.glass[0].images[0].path);
-    for (PerCamera<DetectedImages>* images : {&sets.direct, &sets.glass})
-        for (DetectedImages& set : *images)
-            for (DetectedImage& image : set.images)
-                image.stem = name;
 }
 
 //! Direct images that have no glass image of their name are of no use here, and those are rarely meant.
@@ -91,7 +77,7 @@ CheckImages readViews(const CheckOptions& o, const Calibration& calibration, con
     for (size_t c = 0; c < calibration.cameras.size(); c++)
         sizes[c] = o.imageSize.empty() ? calibration.cameras[c].camera->imageSize() : parseSize(o.imageSize, "--image-size");
     RigImages sets = readRigImages(o.images, &target, sizes, command.quiet());
-    nameSingles(sets);
+    sets.nameSingles();
     requirePairs(o, sets, command);
     warnNotFound(sets, command);
     CheckImages result;

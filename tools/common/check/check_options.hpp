@@ -4,7 +4,7 @@
 #ifndef REFRACT_TOOLS_CHECK_OPTIONS_HPP
 #define REFRACT_TOOLS_CHECK_OPTIONS_HPP
 
-#include "assess/new_pane.hpp"
+#include "assess/check_input.hpp"
 #include "calibrate/conditions.hpp"
 #include "calibrate/rig_data.hpp"
 

@@ -4,11 +4,24 @@
 #ifndef REFRACT_TOOLS_CHECK_OUTPUT_HPP
 #define REFRACT_TOOLS_CHECK_OUTPUT_HPP
 
+#include "assess/rig_check.hpp"
 #include "check/check_images.hpp"
+#include "check/check_options.hpp"
 #include "console/json.hpp"
 
 /* What refract_check says and writes of one check. */
 namespace tools {
+
+/* Whether the images of a check can tell. */
+
+/** Empty, or why "unchanged" cannot be said: with too low a probability the images would show what --detect asks for.
+@param input that was tested */
+std::string whyNot(const CheckResult& result, const CheckOptions& options, const CheckInput& input);
+
+const char CANNOT_TELL[] = "cannot tell";
+
+//! In a word or two. @param why of whyNot
+std::string verdictOf(const CheckResult& result, const std::string& why);
 
 Json checkJson(const CheckResult& result, const CheckOptions& options, const CheckInput& input, const std::string& verdict,
                const std::string& why);

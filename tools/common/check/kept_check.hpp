@@ -5,7 +5,7 @@
 #define REFRACT_TOOLS_KEPT_CHECK_HPP
 
 #include "check/check_images.hpp"
-#include "console/file_lock.hpp"
+#include "console/file_output.hpp"
 #include "console/json.hpp"
 #include "history/check_history.hpp"
 #include "history/drift.hpp"

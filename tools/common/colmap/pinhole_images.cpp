@@ -7,7 +7,7 @@
 #include "console/failure.hpp"
 #include "console/file_output.hpp"
 #include "console/json.hpp"
-#include "console/median.hpp"
+#include "console/numbers.hpp"
 #include "console/outputs.hpp"
 #include "console/progress.hpp"
 #include "formats/colmap_cameras.hpp"

@@ -3,7 +3,7 @@
 
 #include "colmap/scale_of_window.hpp"
 #include "console/failure.hpp"
-#include "console/median.hpp"
+#include "console/numbers.hpp"
 #include "console/progress.hpp"
 
 #include <algorithm>

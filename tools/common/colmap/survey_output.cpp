@@ -5,9 +5,8 @@
 #include "bundle/bundle_output.hpp"
 #include "console/csv.hpp"
 #include "console/json.hpp"
-#include "console/median.hpp"
+#include "console/numbers.hpp"
 #include "console/table.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <ostream>
@@ -143,6 +142,8 @@ void leaveOut(const SurveyResult& result, ColmapModel& model)
     model.images.resize(kept);
 }
 
+const double VAGUE = 0.1;       // of a scale that the window alone tells: what it is told beforehand has no say up to here
+
 } // namespace
 
 std::vector<NearestPinhole> pinholesOf(const Survey& survey, const SurveyAdjustment& adjustment)
@@ -161,7 +162,8 @@ std::vector<NearestPinhole> pinholesOf(const Survey& survey, const SurveyAdjustm
     return pinholes;
 }
 
-std::string scaleText(const SurveyStart& start, const SurveyAdjustment& adjustment)
+//! "the window alone, +- 2.1 %"
+static std::string scaleText(const SurveyStart& start, const SurveyAdjustment& adjustment)
 {
     return start.scale + (std::isfinite(adjustment.scaleStd) ? format(", +- %.2g %%", 100.*adjustment.scaleStd) : "");
 }
@@ -289,6 +291,27 @@ void printSurvey(std::ostream& out, const SurveyResult& result)
     out << format("a pinhole in place of the window is off by %.2g px RMS, %.2g px at most\n", worst->rms, worst->max);
     if (!result.findings.weak.empty())
         out << fittedLine("hardly determined: ", result.findings.weak) << "\n";
+}
+
+SurveyResult adjustColmap(const SurveyOptions& options, const BundleStart& start, const std::string& unit, bool quiet)
+{
+    SurveyResult result;
+    result.unit = unit;
+    result.survey = surveyOf(readColmapModel(options.model), start.rig, options.images, options.model);
+    result.start = startSurvey(result.survey, start, options.lengths, options.positions, options.model, quiet);
+    const auto adjusted = [&](const BundleStart& from) {
+        return adjustSurvey(result.survey, from, result.start, options.robust, options.memory, quiet); };
+    result.adjustment = adjusted(start);
+    for (int view = 0; view < (int)result.survey.views.size(); view++)
+        if (!result.adjustment.hasPose(view))
+            result.survey.leaveOut(view);
+    result.findings = findingsOf(start, result.start.lengths, result.adjustment.bundle, options.pixelSigma, options.maxRms);
+    checkPlaces(start, [&](const BundleStart& freed) { return adjusted(freed).bundle; }, result.findings);
+    result.findings.scale = scaleText(result.start, result.adjustment);
+    if (result.start.isScaleOfWindow && !(result.adjustment.scaleStd <= VAGUE))
+        result.findings.weak.insert(result.findings.weak.begin(), "the scale, which the window alone tells: give --lengths or --positions");
+    result.pinholes = pinholesOf(result.survey, result.adjustment);
+    return result;
 }
 
 } // namespace tools

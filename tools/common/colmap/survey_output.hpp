@@ -5,9 +5,8 @@
 #define REFRACT_TOOLS_SURVEY_OUTPUT_HPP
 
 #include "bundle/bundle_findings.hpp"
-#include "colmap/nearest_pinhole.hpp"
+#include "colmap/scene_depth.hpp"
 #include "colmap/survey_adjustment.hpp"
-
 #include <iosfwd>
 
 /* What refract_bundle --colmap writes and says. */
@@ -26,9 +25,6 @@ struct SurveyResult
 
 //! Of each camera, by the points that it sees.
 std::vector<NearestPinhole> pinholesOf(const Survey& survey, const SurveyAdjustment& adjustment);
-
-//! "the window alone, +- 2.1 %"
-std::string scaleText(const SurveyStart& start, const SurveyAdjustment& adjustment);
 
 //! id,x,y,z,sx,sy,sz,images,angle_deg,status, one row a point of the model.
 std::string surveyPointsCsv(const SurveyResult& result);
@@ -49,6 +45,21 @@ std::string surveyJson(const SurveyResult& result, const std::string& command);
 
 //! At most ten lines of 80 columns.
 void printSurvey(std::ostream& out, const SurveyResult& result);
+
+/* A survey from a folder with a model of COLMAP to its results. */
+
+struct SurveyOptions
+{
+    std::string model;                          //!< --colmap; empty: none
+    std::vector<std::string> images;            //!< globs of names, one a camera; none: see surveyOf()
+    std::string lengths, positions;             //!< files; may be empty
+    bool robust = true;
+    double memory = 0.;                         //!< GB that +- of poses and points may take; 0: any
+    double pixelSigma = 0., maxRms = 0.;        //!< px; 0: not known, no limit
+};
+
+//! Throws Failure.
+SurveyResult adjustColmap(const SurveyOptions& options, const BundleStart& start, const std::string& unit, bool quiet);
 
 } // namespace tools
 

@@ -5,7 +5,7 @@
 #include "colmap/scale_of_window.hpp"
 #include "console/csv.hpp"
 #include "console/failure.hpp"
-#include "console/median.hpp"
+#include "console/numbers.hpp"
 #include "console/progress.hpp"
 
 #include <algorithm>
@@ -201,7 +201,8 @@ double vagueTurn(double distance, double std)
 
 } // namespace
 
-std::map<int, KnownPosition> readPositions(const std::string& path, const Survey& survey)
+//! positions.csv: image,x,y,z,std, of images of camera 1 by their names. By view. Throws Failure that names file and line.
+static std::map<int, KnownPosition> readPositions(const std::string& path, const Survey& survey)
 {
     const CsvTable table(path, {"image", "x", "y", "z", "std"}, "a table of positions of images");
     std::map<std::string, int> images;

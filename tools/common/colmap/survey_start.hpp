@@ -18,9 +18,6 @@ struct KnownPosition
     double std;                 //!< of each coordinate
 };
 
-//! positions.csv: image,x,y,z,std, of images of camera 1 by their names. By view. Throws Failure that names file and line.
-std::map<int, KnownPosition> readPositions(const std::string& path, const Survey& survey);
-
 //! What the adjustment of a survey starts from. Its frame is that of the model, or of the positions, less `origin`.
 struct SurveyStart
 {

@@ -2,15 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "console/cli.hpp"
-#include "console/exif.hpp"
+#include "console/images.hpp"
 
 #include <opencv2/core/utils/logger.hpp>
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <iostream>
-#include <limits>
-#include <locale>
 #include <sstream>
 
 namespace tools {

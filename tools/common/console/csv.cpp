@@ -3,8 +3,8 @@
 
 #include "console/csv.hpp"
 #include "console/failure.hpp"
-#include "console/lines.hpp"
 #include "console/numbers.hpp"
+#include "console/table.hpp"
 #include "console/utf8.hpp"
 
 #include <algorithm>

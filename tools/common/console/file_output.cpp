@@ -3,10 +3,14 @@
 
 #include "console/file_output.hpp"
 #include "console/failure.hpp"
-
+#include <fcntl.h>
 #include <opencv2/imgcodecs.hpp>
+#include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
+#include <cerrno>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -55,6 +59,41 @@ bool copyInto(const std::string& special, const std::string& file)
 }
 
 } // namespace
+
+FileLock::FileLock(const std::string& file, int descriptor) : file_(file), descriptor_(descriptor) {}
+
+//! The file that was opened must still be the one of that name: the other takes it away with itself.
+static bool isStillNamed(int descriptor, const std::string& file)
+{
+    struct stat opened = {}, named = {};
+    return fstat(descriptor, &opened) == 0 && stat(file.c_str(), &named) == 0 && opened.st_ino == named.st_ino;
+}
+
+std::unique_ptr<FileLock> FileLock::tryOnce(const std::string& file)
+{
+    const int TRIES = 10;
+    for (int i = 0; i < TRIES; i++)
+    {
+        int descriptor = open(file.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0666);
+        if (descriptor < 0 && errno == EACCES)      // another user left it
+            descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC);
+        if (descriptor < 0)
+            throw Failure("cannot write '" + file + "', which keeps two runs at once apart: " + std::strerror(errno));
+        const bool isTaken = flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;      // else: locked, or no locks here
+        if (!isTaken && isStillNamed(descriptor, file))
+            return std::unique_ptr<FileLock>(new FileLock(file, descriptor));
+        close(descriptor);
+        if (isTaken)
+            return nullptr;
+    }
+    return nullptr;
+}
+
+FileLock::~FileLock()
+{
+    unlink(file_.c_str());
+    close(descriptor_);
+}
 
 std::string targetOfLinks(const std::string& path)
 {

@@ -7,10 +7,29 @@
 #include <opencv2/core.hpp>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 namespace tools {
+
+/** What one process of several may have at a time: a file of this name, which goes with the lock. Where a signal ends the process the file
+stays, and the lock goes. */
+class FileLock
+{
+public:
+    //! Null: another process has it. A file system without locks keeps nobody apart. Throws Failure if there can be no such file.
+    static std::unique_ptr<FileLock> tryOnce(const std::string& file);
+    ~FileLock();
+    FileLock(const FileLock&) = delete;
+    FileLock& operator=(const FileLock&) = delete;
+
+private:
+    FileLock(const std::string& file, int descriptor);
+
+    std::string file_;
+    int descriptor_;
+};
 
 /* A file that is complete or absent: written under another name in the same folder, renamed at the end, removed if the work fails.
 The temporary name keeps the extension, by which cv::imwrite and cv::FileStorage choose the format. A link stays one: what it leads to

@@ -3,17 +3,16 @@
 
 #include "console/images.hpp"
 #include "console/failure.hpp"
-#include "console/exif.hpp"
+#include "console/numbers.hpp"
 #include "console/utf8.hpp"
-
+#include <glob.h>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
-#include <glob.h>
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <mutex>
 #include <set>
 
 namespace tools {
@@ -21,6 +20,9 @@ namespace tools {
 namespace fs = std::filesystem;
 
 namespace {
+
+std::mutex turnedMutex;             // images are read by several threads
+std::vector<std::string> turned;
 
 std::vector<uchar> readBytes(const std::string& path)
 {
@@ -77,6 +79,29 @@ void requireOnePage(const std::string& path, const std::vector<uchar>& bytes)
         throw Failure("'" + path + "' has " + std::to_string(pages) + " pages: save each as an image of its own");
 }
 
+//! The file is read as stored; one warning at the end of the tool names all such files.
+void noteRotatedImage(const std::string& path)
+{
+    const std::lock_guard<std::mutex> lock(turnedMutex);
+    if (std::find(turned.begin(), turned.end(), path) == turned.end())
+        turned.push_back(path);
+}
+
+/** Whether the EXIF data of a JPEG or PNG file rotate the picture: OpenCV's reader decides, with and without them. (A picture that is the
+same when rotated counts as not rotated.) */
+bool hasExifRotation(const std::vector<unsigned char>& bytes)
+{
+    const size_t EARLY = 1 << 20;       // bytes; EXIF data are before the picture, but may hold a small one of their own
+    const auto end = bytes.begin() + (long)std::min(bytes.size(), EARLY);
+    const auto has = [&](const std::string& mark) { return std::search(bytes.begin(), end, mark.begin(), mark.end()) != end; };
+    if (!has("Exif") && !has("eXIf"))   // hardly ever is a picture read twice for nothing
+        return false;
+    // Only the small picture of an eighth is made.
+    const cv::Mat turned = cv::imdecode(bytes, cv::IMREAD_REDUCED_GRAYSCALE_8);
+    const cv::Mat stored = cv::imdecode(bytes, cv::IMREAD_REDUCED_GRAYSCALE_8 | cv::IMREAD_IGNORE_ORIENTATION);
+    return turned.size() != stored.size() || (!stored.empty() && cv::norm(turned, stored, cv::NORM_INF) > 0);
+}
+
 /* As the sensor saw it: the orientation in the EXIF data is ignored, which turns with how the camera was held, while
 the lens does not. */
 cv::Mat decode(const std::string& path, int flags)
@@ -106,6 +131,18 @@ cv::Mat decode(const std::string& path, int flags)
 }
 
 } // namespace
+
+std::string takeRotationNotice()
+{
+    const std::lock_guard<std::mutex> lock(turnedMutex);
+    std::vector<std::string> names;
+    names.swap(turned);
+    if (names.empty())
+        return "";
+    std::sort(names.begin(), names.end());
+    return "the EXIF data of " + listed(names) + (names.size() == 1 ? " asks" : " ask") + " for a turned picture; the pixels are "
+           "used as they are stored, since the lens does not turn with the camera";
+}
 
 static const char* const CHANNELS[] = {"blue", "green", "red", "brightness"};
 

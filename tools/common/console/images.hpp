@@ -10,6 +10,12 @@
 
 namespace tools {
 
+/* Many cameras store their orientation in the EXIF data, and viewers rotate the picture by it. The lens does not rotate: the tools use
+the pixels as they are stored, and warn the user. */
+
+//! The sentence, once; empty if no file was noted.
+std::string takeRotationNotice();
+
 //! What of a colour image is looked at; the numbers are OpenCV's order.
 enum Channel { BLUE, GREEN, RED, BRIGHTNESS };
 

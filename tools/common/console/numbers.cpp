@@ -3,15 +3,43 @@
 
 #include "console/numbers.hpp"
 #include "console/failure.hpp"
-
+#include <opencv2/core.hpp>
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstddef>
+#include <cstdlib>
 #include <limits>
 #include <locale>
 #include <sstream>
 
 namespace tools {
+
+int decimalsOf(double uncertainty)
+{
+    const int UNKNOWN = 6;
+    if (!(uncertainty > 0) || !std::isfinite(uncertainty))
+        return UNKNOWN;
+    const std::string digits = cv::format("%.1e", uncertainty);        // 0.0996 -> 1.0e-01
+    return 1 - std::atoi(digits.c_str() + digits.find('e') + 1);
+}
+
+std::string rounded(double value, int decimals, bool sign)
+{
+    const double unit = std::pow(10., -decimals), number = decimals < 0 ? unit*std::round(value/unit) : value;
+    const std::string text = cv::format(sign ? "%+.*f" : "%.*f", std::max(0, decimals), number);
+    const bool isZero = text.find_first_of("123456789") == std::string::npos;       // which has no sign
+    return isZero && text.find_first_of("+-") == 0 ? text.substr(1) : text;
+}
+
+double median(std::vector<double> values)
+{
+    if (values.empty())
+        return std::numeric_limits<double>::quiet_NaN();
+    const auto middle = values.begin() + (std::ptrdiff_t)values.size()/2;
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
 
 bool parseNumber(const std::string& text, double& number)
 {

@@ -10,6 +10,17 @@
 
 namespace tools {
 
+/* Numbers beside their uncertainty: two significant digits of it, and the value as far (GUM 7.2.6), whatever the unit is. */
+
+//! Digits after the decimal point that an uncertainty leaves; below 0 tens, hundreds. Of 0 and NaN 6.
+int decimalsOf(double uncertainty);
+
+//! @param sign also of a positive number
+std::string rounded(double value, int decimals, bool sign = false);
+
+//! Of an even number the upper one of the two in the middle; NaN of none.
+double median(std::vector<double> values);
+
 //! Takes all of the text, or nothing; whatever the user's locale says about decimal commas.
 bool parseNumber(const std::string& text, double& number);
 

@@ -4,11 +4,12 @@
 #include "console/options.hpp"
 #include "console/failure.hpp"
 #include "console/numbers.hpp"
-#include "console/settings_file.hpp"
-
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <iterator>
+#include <set>
 #include <sstream>
 
 namespace tools {
@@ -34,6 +35,33 @@ std::string unknownOption(const CLI::App& app)
 }
 
 } // namespace
+
+//! What stands before the first '=' of a line, without blanks and quotes; empty if that is no name.
+static std::string nameOf(const std::string& line)
+{
+    const std::string AROUND = " \t\"'";
+    const size_t equals = line.find('='), begin = line.find_first_not_of(AROUND);
+    if (equals == std::string::npos || begin >= equals)
+        return "";
+    const std::string name = line.substr(begin, line.find_last_not_of(AROUND, equals - 1) + 1 - begin);
+    const auto isOfName = [](char c) { return std::isalnum((unsigned char)c) || c == '.' || c == '_' || c == '-'; };
+    return std::all_of(name.begin(), name.end(), isOfName) ? name : "";
+}
+
+//! The text of a file of settings, without a byte order mark. Throws Failure for a setting that comes twice.
+static std::string readSettings(std::istream& in)
+{
+    const std::string MARK = "\xEF\xBB\xBF", text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+    std::istringstream lines(text.compare(0, MARK.size(), MARK) == 0 ? text.substr(MARK.size()) : text);
+    std::set<std::string> names;
+    for (std::string line; std::getline(lines, line); )
+    {
+        const std::string name = nameOf(line);
+        if (!name.empty() && !names.insert(name).second)
+            throw Failure("--config: '" + name + "' is set twice; several values are a list: name = [one, two]");
+    }
+    return lines.str();
+}
 
 Check::Check(const CLI::Validator& validator) : validator_(std::make_shared<CLI::Validator>(validator)) {}
 

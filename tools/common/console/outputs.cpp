@@ -3,14 +3,12 @@
 
 #include "console/outputs.hpp"
 #include "console/failure.hpp"
-#include "console/file_lock.hpp"
 #include "console/file_output.hpp"
 #include "console/images.hpp"
 #include "console/utf8.hpp"
 
 #include <opencv2/imgcodecs.hpp>
 #include <algorithm>
-#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <memory>

@@ -6,6 +6,8 @@
 
 #include <opencv2/core.hpp>
 #include <iosfwd>
+#include <istream>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -31,6 +33,27 @@ using cv::format;   //!< printf for a cell
 
 //! "7.040 +- 0.020": two digits of the standard deviation, and the value as far.
 std::string plusMinus(double value, double std);
+
+//! Characters on the screen: UTF-8 continuation bytes take no place.
+size_t columnsOf(const std::string& text);
+
+enum class LongWords { WHOLE, BROKEN };
+
+/** Lines of so many columns at most, broken between words; `indent` begins the second and on. A word that is longer than a line stays
+whole, and the line is longer, or is broken. */
+std::vector<std::string> brokenInto(const std::string& text, size_t columns, const std::string& indent, LongWords longWords);
+
+//! The first of these lines; where some are missing the last ends with "...".
+std::vector<std::string> firstOf(const std::vector<std::string>& lines, size_t count, size_t columns);
+
+//! "a; or b; or c". @param most of them; then how many others there are
+std::string alternatives(const std::vector<std::string>& sentences, size_t most = std::numeric_limits<size_t>::max());
+
+//! One line of a file, whichever of LF, CR LF or CR alone ends it; false: there is none.
+bool takeLine(std::istream& in, std::string& line);
+
+//! What goes to stderr comes out where stdout does: on one terminal, in one file, into one pipe.
+bool errorsFollowOutput();
 
 } // namespace tools
 

@@ -4,6 +4,7 @@
 #include "console/times.hpp"
 #include "console/failure.hpp"
 #include <opencv2/core.hpp>
+#include <sys/stat.h>
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -35,10 +36,23 @@ std::string timeAt(double seconds)
     return out.str();
 }
 
-std::string timeOfNow()
+//! That of SOURCE_DATE_EPOCH, if it is set.
+static std::string timeOr(std::time_t otherwise)
 {
     const char* epoch = std::getenv("SOURCE_DATE_EPOCH");
-    return timeAt(epoch && *epoch ? (double)std::strtoll(epoch, nullptr, 10) : (double)std::time(nullptr));
+    return timeAt(epoch && *epoch ? (double)std::strtoll(epoch, nullptr, 10) : (double)otherwise);
+}
+
+std::string timeOfNow() { return timeOr(std::time(nullptr)); }
+
+std::string timeOfFiles(const std::vector<std::string>& inputs)
+{
+    std::time_t newest = 0;
+    struct stat status;
+    for (const std::string& file : inputs)
+        if (stat(file.c_str(), &status) == 0)
+            newest = std::max(newest, status.st_mtime);
+    return timeOr(newest);
 }
 
 std::string parseTime(const std::string& text, const std::string& option)

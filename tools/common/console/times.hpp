@@ -5,6 +5,7 @@
 #define REFRACT_TOOLS_TIMES_HPP
 
 #include <string>
+#include <vector>
 
 /* Times in files and on command lines, as ISO 8601 writes them in UTC: 2026-11-26T08:30:00Z. */
 namespace tools {
@@ -18,6 +19,9 @@ void requirePast(const std::string& text, const std::string& option);
 
 //! That of now, or of SOURCE_DATE_EPOCH if it is set.
 std::string timeOfNow();
+/** The time that outputs carry, ISO 8601 UTC: that of SOURCE_DATE_EPOCH, if set, else of the newest input, so that the same
+input gives the same bytes. */
+std::string timeOfFiles(const std::vector<std::string>& inputs);
 //! Seconds since 1970. @param time in UTC
 double secondsOf(const std::string& time);
 std::string timeAt(double seconds);

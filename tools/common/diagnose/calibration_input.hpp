@@ -23,6 +23,20 @@ bool hasPairs(const RigData& data);
 //! The images of one camera, as a rig of its own.
 CalibrationInput oneCamera(const CalibrationInput& input, int camera);
 
+//! What the images fit if a mistake is undone.
+struct Explanation
+{
+    std::string sentence;
+    double px;                  //!< median error of the fit, see medianErrorOfFit
+};
+
+//! A mistake in the input of a calibration, which may explain why the images do not fit.
+struct Mistake
+{
+    bool (*appliesTo)(const CalibrationInput& input);           //!< whether this input can have it
+    Explanation (*undo)(const CalibrationInput& input);         //!< undoes it and fits the same images again
+};
+
 } // namespace tools
 
 #endif // REFRACT_TOOLS_CALIBRATION_INPUT_HPP

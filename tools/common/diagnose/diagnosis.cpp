@@ -2,16 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "diagnose/diagnosis.hpp"
+#include "calibrate/fit.hpp"
+#include "console/failure.hpp"
+#include "console/numbers.hpp"
+#include "console/table.hpp"
 #include "diagnose/fit_quality.hpp"
 #include "diagnose/image_disagreement.hpp"
 #include "diagnose/image_mistakes.hpp"
-#include "diagnose/target_mistakes.hpp"
 #include "diagnose/value_mistakes.hpp"
-#include "calibrate/image_fit.hpp"
-#include "console/failure.hpp"
-#include "console/lines.hpp"
-#include "console/median.hpp"
-#include "console/table.hpp"
 #include <algorithm>
 #include <iterator>
 #include <set>

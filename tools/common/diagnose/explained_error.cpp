@@ -2,12 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "diagnose/explained_error.hpp"
+#include "console/table.hpp"
 #include "diagnose/diagnosis.hpp"
-#include "diagnose/value_mistakes.hpp"
 #include "diagnose/fit_quality.hpp"
 #include "diagnose/image_mistakes.hpp"
-#include "console/lines.hpp"
-#include "console/table.hpp"
+#include "diagnose/value_mistakes.hpp"
 
 using namespace cv::refract;
 

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "diagnose/fit_quality.hpp"
-#include "calibrate/image_fit.hpp"
-#include "console/median.hpp"
+#include "calibrate/fit.hpp"
+#include "console/numbers.hpp"
 #include <algorithm>
 #include <cmath>
 

@@ -3,8 +3,7 @@
 
 #include "diagnose/hypothesis_tests.hpp"
 #include "diagnose/causes.hpp"
-#include "diagnose/ranking.hpp"
-#include "measure/chi_squared.hpp"
+#include "measure/distributions.hpp"
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -15,6 +14,11 @@ using namespace cv::refract;
 namespace tools {
 
 namespace {
+
+const double VERY_STRONG = 10.;         // difference of two criteria
+// Corners err a little together: two that remove nearly the same of a contradiction are as good.
+const double AS_GOOD_SHARE = 0.05;
+const double MORE_NOISE = 0.1;          // but leaves no more than this share beyond noise: of a gross contradiction 5 % is a lot
 
 /* The likelihood ratio: twice the difference of the log likelihoods of a fit with a value free and of one within its prior is
 distributed as chi^2 with as many degrees of freedom as numbers were freed, if the prior is right (Wilks, Annals of Mathematical
@@ -127,6 +131,32 @@ Trial triedAll(const RigData& data, const RigOptions& options, const Fit& fit, c
 }
 
 } // namespace
+
+std::vector<Hypothesis> rank(const Hypothesis& asGiven, const std::vector<Hypothesis>& tried, int observations, double noise)
+{
+    double variance = asGiven.squares/observations;
+    for (const Hypothesis& h : tried)
+        variance = std::min(variance, h.squares/std::max(1, observations - h.parameters));
+    variance = std::max(variance, noise*noise);
+    if (!(variance > 0.) || !std::isfinite(variance))
+        return {};
+    const auto criterion = [&](const Hypothesis& h) { return h.squares/variance + h.parameters*std::log((double)observations); };
+    std::vector<Hypothesis> ranked = tried;
+    std::stable_sort(ranked.begin(), ranked.end(), [&](const Hypothesis& a, const Hypothesis& b) { return criterion(a) < criterion(b); });
+    const double gained = ranked.empty() ? 0. : criterion(asGiven) - criterion(ranked[0]);
+    if (!(gained > VERY_STRONG))
+        return {};
+    const double margin = std::isfinite(gained) ? std::max(VERY_STRONG, std::min(AS_GOOD_SHARE*gained, MORE_NOISE*observations))
+                                                 : VERY_STRONG;
+    // What is as good needs no more than to explain as much: the penalty of its parameters says which is simpler, not which is true. A
+    // motion of all boards has six, a thickness one, and along the axis images do not tell one from the other.
+    const double most = ranked[0].squares/variance + margin, leastGain = criterion(asGiven) - VERY_STRONG,
+                 best = criterion(ranked[0]);
+    const auto isMuchWorse = [&](const Hypothesis& h) {
+        return !(criterion(h) <= best + margin) && !(h.squares/variance <= most && criterion(h) < leastGain); };
+    ranked.erase(std::remove_if(ranked.begin() + 1, ranked.end(), isMuchWorse), ranked.end());
+    return ranked;
+}
 
 std::vector<CauseTest> testCauses(const RigData& data, const RigOptions& options, const Fit& fit)
 {

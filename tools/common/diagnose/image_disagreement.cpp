@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "diagnose/image_disagreement.hpp"
-#include "console/median.hpp"
-#include "diagnose/fit_quality.hpp"
 #include "calibrate/pinhole_camera.hpp"
+#include "console/numbers.hpp"
+#include "diagnose/fit_quality.hpp"
 #include <opencv2/calib3d.hpp>
 #include <algorithm>
 #include <cmath>

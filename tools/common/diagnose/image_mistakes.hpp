@@ -4,7 +4,7 @@
 #ifndef REFRACT_TOOLS_IMAGE_MISTAKES_HPP
 #define REFRACT_TOOLS_IMAGE_MISTAKES_HPP
 
-#include "diagnose/mistake.hpp"
+#include "diagnose/calibration_input.hpp"
 
 /* Images that are not what they are given for. Each function undoes one mix-up, and fits the same images again. */
 namespace tools {
@@ -35,6 +35,18 @@ Explanation unpairedImages(const CalibrationInput& input);
 /** Points from files: one axis reversed or two exchanged, v counted from below, or the same in one camera's file. Each of these
 makes a mirror image. A flat target cannot tell, unless only one camera has it. */
 Explanation mirroredPoints(const CalibrationInput& input);
+
+/* A target that is not as given, found without a fit through the window. Each returns a sentence; empty: no such mistake. */
+
+/** The detector finds a part of the board in place of the board, and not the same part in each image.
+@param fewest views, above 0, that show it: of one alone the board may have moved by about a square */
+std::string partOfBoard(const CalibrationInput& input, size_t fewest);
+
+//! px RMS that a lens leaves of a camera's direct images; 0: there are none, or they are not asked for the lens.
+double errorOfDirect(const CalibrationInput& input, int camera);
+
+//! Corners in the direct images that no lens explains.
+std::string badCorners(const CalibrationInput& input);
 
 } // namespace tools
 

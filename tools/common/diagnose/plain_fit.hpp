@@ -4,13 +4,17 @@
 #ifndef REFRACT_TOOLS_PLAIN_FIT_HPP
 #define REFRACT_TOOLS_PLAIN_FIT_HPP
 
+#include "calibrate/fit.hpp"
+#include "calibrate/starting_model.hpp"
 #include "diagnose/calibration_input.hpp"
 #include "diagnose/fit_quality.hpp"
 #include "diagnose/hypothesis_tests.hpp"
-#include "diagnose/mistake.hpp"
 #include <optional>
 
 namespace tools {
+
+/* A calibration before it is fitted: where causes are looked for if the library has no fit of the images, as pairs that contradict each
+other by pixels. A fit that was forced through these ends far from the truth; the start does not know of the contradiction. */
 
 //! A fit of all images to what is given, without a search for wrong points: a wrong value makes many good points look wrong.
 struct PlainFit

@@ -4,10 +4,58 @@
 #ifndef REFRACT_TOOLS_VALUE_CAUSES_HPP
 #define REFRACT_TOOLS_VALUE_CAUSES_HPP
 
-#include "diagnose/fitted_rig.hpp"
+#include "diagnose/causes.hpp"
 
 /* Causes of a contradiction that are a value which was given of windows. */
 namespace tools {
+
+/* A fitted rig as the causes of a contradiction look at it, and the words that they share. */
+
+struct FittedRig
+{
+    const RigData& data;
+    const RigOptions& options;
+    const Fit& fit;
+
+    std::vector<int> windowOwners() const
+    {
+        std::vector<int> owners;
+        for (int c = 0; c < data.cameraCount; c++)
+            if (fit.rig.ownsWindow(c))
+                owners.push_back(c);
+        return owners;
+    }
+    //! Of all cameras, or of one.
+    bool hasBothStates(int camera = -1) const
+    {
+        bool direct = false, glass = false;
+        for (int m : fit.views)
+            for (int c = 0; c < data.cameraCount; c++)
+                if (camera < 0 || c == camera)
+                {
+                    direct = direct || data.views[m].hasDirect(c);
+                    glass = glass || data.views[m].hasGlass(c);
+                }
+        return direct && glass;
+    }
+};
+
+//! " of camera 2"; nothing where there is one.
+std::string ofCamera(const FittedRig& rig, int camera);
+
+//! " of camera 2's window"; nothing where there is one.
+std::string ofWindow(const FittedRig& rig, int camera);
+
+//! By the ratio of likelihoods, of all that is freed: no distance from the given value in units of the freed one's +-.
+std::string howSure(double deviations);
+
+std::string unitHint(double ratio);
+
+//! The standard deviation of a sum of numbers of the rig.
+double stdOfSum(const Relaxed& found, const std::vector<int>& numbers);
+
+//! The side of a board's square, as it is given; 0: there is no board.
+double squareOf(const RigData& data);
 
 //! Thickness, index, distance, radius, medium: all windows together, as one option gives them; and each alone.
 void addValues(const FittedRig& rig, std::vector<Cause>& causes);

@@ -2,13 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "diagnose/value_mistakes.hpp"
-#include "diagnose/fit_quality.hpp"
-#include "calibrate/pinhole_rig.hpp"
-#include "calibrate/units.hpp"
+#include "calibrate/pinhole_camera.hpp"
 #include "calibrate/starting_model.hpp"
+#include "calibrate/units.hpp"
 #include "calibrate/window_face.hpp"
-#include "console/median.hpp"
+#include "console/numbers.hpp"
 #include "console/table.hpp"
+#include "diagnose/fit_quality.hpp"
 #include <algorithm>
 #include <numeric>
 

@@ -4,7 +4,7 @@
 #ifndef REFRACT_TOOLS_VALUE_MISTAKES_HPP
 #define REFRACT_TOOLS_VALUE_MISTAKES_HPP
 
-#include "diagnose/mistake.hpp"
+#include "diagnose/calibration_input.hpp"
 
 /* Wrong given values. Each function sets one free, or to another likely value, and fits the same images again. */
 namespace tools {

@@ -11,6 +11,20 @@
 
 namespace tools {
 
+//! Scene points, camera frame, and their pixels: central cameras are fitted to them and compared with them.
+struct SeenPoints
+{
+    std::vector<cv::Point3d> points;
+    std::vector<cv::Point2d> pixels;
+    bool allBeyondWindow = true;        //!< hardly a pixel meets one of the depths within its window
+};
+
+//! Pixels all over the image, seen at depths whose inverses are evenly spaced.
+SeenPoints seenPoints(const cv::Ptr<cv::refract::RefractiveCamera>& camera, const cv::Vec2d& range, int columns, int rows, int depths);
+
+//! Throws Failure if the camera of that name sees hardly anything of the range.
+void requireEnough(const SeenPoints& seen, const cv::Vec2d& range, const std::string& name);
+
 /* The central camera (without a window) that best approximates a camera behind a window, between two depths: its lens and pose are
 fitted to exact projections of points all over the image and the range. Its centre is not that of the true camera: a pane in air
 shifts the apparent centre of projection, a port in water also changes the focal length. The error that remains is reported. */
@@ -29,6 +43,8 @@ struct CentralCamera
     CentralError error;
 };
 
+CentralError errorOf(const SeenPoints& seen, const CentralCamera& central);
+
 /** @param camera with its image size
 @param range z in the frame of the camera, near and far, both finite
 @param coefficients of OpenCV's model; 0: those of cv::fisheye
@@ -38,6 +54,30 @@ CentralCamera fitCentralCamera(const cv::Ptr<cv::refract::RefractiveCamera>& cam
 
 //! A camera without a window is its own central camera. @param camera with its image size
 CentralCamera centralCamera(const cv::Ptr<cv::refract::RefractiveCamera>& camera, const cv::Vec2d& range);
+
+//! A camera of a rig for programs that have no model of a window.
+struct ExportedCamera
+{
+    std::string name;           //!< camera1, ...
+    cv::Ptr<cv::refract::RefractiveCamera> trueCamera;
+    RigidTransform truePose;    //!< frame of camera 1 of the calibration -> true camera
+    CentralCamera central;
+    RigidTransform pose;        //!< frame of camera 1 of the calibration -> central camera
+};
+
+//! The cameras to export, and the range for which they are valid.
+struct CentralRig
+{
+    std::vector<ExportedCamera> cameras;
+    std::string source;         //!< the calibration's file
+    cv::Vec2d range;            //!< z, frame of each camera
+    std::string unit;           //!< of length; may be empty
+};
+
+//! "rms 0.12 px, max 0.5 px, ..." of a camera.
+std::string errorText(const CentralRig& rig, const ExportedCamera& camera);
+//! The first lines of every file, without the comment sign.
+std::string headText(const CentralRig& rig);
 
 } // namespace tools
 

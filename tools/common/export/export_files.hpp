@@ -5,7 +5,7 @@
 #define REFRACT_TOOLS_EXPORT_FILES_HPP
 
 #include "calibrate/calib_file.hpp"
-#include "export/central_rig.hpp"
+#include "export/central_camera.hpp"
 #include "export/measured_points.hpp"
 
 /* Files for programs that have no model of a window, each states its error, and for those that have one. */

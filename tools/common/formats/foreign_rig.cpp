@@ -3,8 +3,8 @@
 
 #include "formats/foreign_rig.hpp"
 #include "console/images.hpp"
-#include "console/lines.hpp"
 #include "console/numbers.hpp"
+#include "console/table.hpp"
 #include "formats/foreign_file.hpp"
 
 #include <algorithm>

@@ -1,9 +1,9 @@
 // This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
 // SPDX-License-Identifier: Apache-2.0
 
-#include "formats/foreign_file.hpp"
-#include "console/lines.hpp"
 #include "console/numbers.hpp"
+#include "console/table.hpp"
+#include "formats/foreign_file.hpp"
 
 #include <algorithm>
 #include <cctype>

@@ -3,7 +3,7 @@
 
 #include "history/control_chart.hpp"
 #include "math/dense.hpp"
-#include "measure/chi_squared.hpp"
+#include "measure/distributions.hpp"
 #include <algorithm>
 #include <cmath>
 #include <limits>

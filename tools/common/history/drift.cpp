@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "history/drift.hpp"
-#include "console/lines.hpp"
 #include "console/table.hpp"
 #include "math/dense.hpp"
 #include "measure/vector_length.hpp"
@@ -138,7 +137,8 @@ int rowOf(const CheckRecord& check, const std::vector<ChartedChange>& changes, i
     return -1;
 }
 
-MatrixXd inverseOf(const CheckRecord& check, int row, int size)
+//! A change's own estimate: to multiply the rows of its score with.
+static MatrixXd inverseOf(const CheckRecord& check, int row, int size)
 {
     return inverse(check.information.block(row, row, size, size));
 }

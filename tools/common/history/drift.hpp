@@ -11,8 +11,6 @@ namespace tools {
 
 //! Where a change's parameters are in a check; -1: its images do not tell.
 int rowOf(const CheckRecord& check, const std::vector<ChartedChange>& changes, int change);
-//! A change's own estimate: to multiply the rows of its score with.
-MatrixXd inverseOf(const CheckRecord& check, int row, int size);
 
 //! The estimate of each parameter by one check, as if nothing else had changed; in the chart's unit. NaN: it does not tell.
 struct Estimates

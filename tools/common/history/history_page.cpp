@@ -116,13 +116,11 @@ PageList estimateRows(const CheckHistory& history, const HistoryResult& result, 
             const ChartedChange& change = history.changes[c];
             const ChartPoint& point = result.points.back();
             const std::string axis = change.axes[i - first[c]];
-            PageValues row;
-            row.set("name", change.name + (axis.empty() ? "" : ", " + axis));
-            row.set("ewma", std::isnan(point.ewma[i]) ? "-" : cv::format("%+.2f", point.ewma[i]));
-            row.set("class", point.isBeyond(i) ? "missed" : "");
-            row.set("value", std::isnan(last.value[i]) ? "-" : plusMinus(last.value[i], last.std[i])
-                    + (change.unit.empty() ? "" : " " + change.unit));
-            list.push_back(row);
+            list.push_back({{"name", change.name + (axis.empty() ? "" : ", " + axis)},
+                            {"ewma", std::isnan(point.ewma[i]) ? "-" : cv::format("%+.2f", point.ewma[i])},
+                            {"class", point.isBeyond(i) ? "missed" : ""},
+                            {"value", std::isnan(last.value[i]) ? "-" : plusMinus(last.value[i], last.std[i])
+                                      + (change.unit.empty() ? "" : " " + change.unit)}});
         }
     return list;
 }
@@ -137,15 +135,9 @@ PageList checkRows(const CheckHistory& history, const HistoryResult& result)
         std::string images;
         for (const CheckedImage& image : check.images)
             images += (images.empty() ? "" : ", ") + image.name;
-        PageValues row;
-        row.set("time", check.time);
-        row.set("verdict", check.verdict);
-        row.set("images", images);
-        row.set("sigma", cv::format("%.4f", check.sigma));
-        row.set("t2", cv::format("%.1f of %.1f (%d)", p.t2, p.limitT2, p.dof));
-        row.set("limit", cv::format("%.2f", p.limit));
-        row.set("alarm", p.isAlarm() ? "beyond a limit" : "");
-        list.push_back(row);
+        list.push_back({{"time", check.time}, {"verdict", check.verdict}, {"images", images},
+                        {"sigma", cv::format("%.4f", check.sigma)}, {"t2", cv::format("%.1f of %.1f (%d)", p.t2, p.limitT2, p.dof)},
+                        {"limit", cv::format("%.2f", p.limit)}, {"alarm", p.isAlarm() ? "beyond a limit" : ""}});
     }
     return list;
 }
@@ -155,10 +147,7 @@ PageList figures(const CheckHistory& history, const HistoryResult& result, const
     PageList list;
     for (int c = 0; c < (int)history.changes.size(); c++)
     {
-        PageValues figure;
-        figure.set("title", history.changes[c].name);
-        figure.set("svg", changeFigure(history, result, covariance, c));
-        list.push_back(figure);
+        list.push_back({{"title", history.changes[c].name}, {"svg", changeFigure(history, result, covariance, c)}});
     }
     return list;
 }

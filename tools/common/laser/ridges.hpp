@@ -5,6 +5,7 @@
 #define REFRACT_TOOLS_RIDGES_HPP
 
 #include <opencv2/core.hpp>
+#include <string>
 #include <vector>
 
 /* Bright lines to a part of a pixel (C. Steger, An unbiased detector of curvilinear structures, PAMI 20, 1998): in the image smoothed by a
@@ -15,6 +16,20 @@ Gaussian, the line runs where the first derivative across it is zero,
 n the direction of the most negative second derivative r_nn. White noise of a pixel, s, makes an error of t of
 s / (sqrt(8 pi) sigma^2 |r_nn|). */
 namespace tools {
+
+/* An image in which little but the laser line is bright: by how much its colour exceeds the two others, which are the same on white, grey
+and black; or what an image without the laser does not show; or the brightness. */
+
+enum LaserColour { LASER_BLUE, LASER_GREEN, LASER_RED, LASER_ANY };
+
+//! "red", "green", "blue", "any"
+std::vector<std::string> laserColourNames();
+LaserColour laserColourOf(const std::string& name);
+
+/** @param image grey or BGR, 8 or 16 bits (a 16-bit one counts 256 as one grey value)
+@param without the same view with the laser off, of the same size and type; or empty
+@return CV_32F */
+cv::Mat laserSignal(const cv::Mat& image, LaserColour colour, const cv::Mat& without = cv::Mat());
 
 struct RidgePoint
 {

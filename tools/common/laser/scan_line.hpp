@@ -4,11 +4,23 @@
 #ifndef REFRACT_TOOLS_SCAN_LINE_HPP
 #define REFRACT_TOOLS_SCAN_LINE_HPP
 
+#include "laser/ridges.hpp"
 #include "laser/sheet.hpp"
 
 /* The laser line on any scene. Along the line, in each column of the image (or row, where depth moves the line along rows), there is one
 point of it; of several ridges in a column it is on the clearly strongest, as reflections in panes are weaker. */
 namespace tools {
+
+/* A ridge is found in an image that was smoothed. Where the line ends, gets darker or jumps, what was smoothed is of two surfaces, and the
+point lies on neither. */
+
+//! Neighbouring points of one line, in order.
+struct LinePiece
+{
+    std::vector<RidgePoint> points;
+    std::vector<int> columns;           //!< of the image, or its rows where the line runs down; growing
+    bool byColumns = true;
+};
 
 struct ScanLine
 {

@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "laser/sheet_fit.hpp"
-#include "console/median.hpp"
-#include "laser/sheet_consensus.hpp"
-#include "laser/sheet_line.hpp"
 #include "console/failure.hpp"
+#include "console/numbers.hpp"
+#include "laser/sheet_line.hpp"
 #include "math/dense.hpp"
 #include <algorithm>
 #include <cmath>

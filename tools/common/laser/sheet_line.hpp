@@ -5,11 +5,15 @@
 #define REFRACT_TOOLS_SHEET_LINE_HPP
 
 #include "laser/board_line.hpp"
-#include "laser/sheet_surface.hpp"
+#include "laser/sheet.hpp"
 
 /* The line on one board, as a sheet's estimate sees it. Few numbers of it tell of the sheet: how far from it its middle is, how it turns,
 and, of a sheet that may be bent, how it bends. Their errors are those of the line's points, of the board's pose and of the calibration. */
 namespace tools {
+
+/** The plane on which candidates of most images lie, by all pairs of candidates of two images (RANSAC's score, without chance).
+@return a unit normal and d; zeros if no two images agree */
+cv::Vec4d planeOfMostLines(const std::vector<BoardImage>& images);
 
 //! The points of a line, by what their distances e from the sheet depend on.
 struct LineRows

@@ -30,6 +30,19 @@ Features featuresOf(const cv::Mat& grey, int most, const std::string& name = "SI
 //! Norm by which descriptors of two images are compared.
 int normOf(const Features& features);
 
+/* Features that are alike in two images, whatever is known of the cameras. */
+
+//! As few tell something of a pair.
+const int MIN_FEATURES = 30;
+
+//! Pixels of features that choose each other.
+struct Partners
+{
+    std::vector<cv::Point2d> pixels1, pixels2;
+};
+//! @param mostFeatures of each image, the strongest
+Partners findPartners(const cv::Mat& grey1, const cv::Mat& grey2, int mostFeatures);
+
 } // namespace tools
 
 #endif // REFRACT_TOOLS_FEATURES_HPP

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "match/match_noise.hpp"
-#include "console/median.hpp"
-#include "measure/chi_squared.hpp"
+#include "console/numbers.hpp"
+#include "measure/distributions.hpp"
 
 #include <algorithm>
 #include <cmath>

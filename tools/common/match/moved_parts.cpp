@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "match/moved_parts.hpp"
-#include "measure/chi_squared.hpp"
+#include "measure/distributions.hpp"
 #include "measure/eigen_matrix.hpp"
 
 #include <algorithm>

@@ -4,7 +4,7 @@
 #include "match/pair_mistakes.hpp"
 #include "calibrate/rig_model.hpp"
 #include "calibrate/window_face.hpp"
-#include "match/partners.hpp"
+#include "match/features.hpp"
 
 #include <algorithm>
 #include <cmath>

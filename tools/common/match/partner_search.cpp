@@ -3,11 +3,11 @@
 
 #include "match/partner_search.hpp"
 #include "match/depth_range.hpp"
-
 #include <opencv2/core/hal/hal.hpp>
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
+#include <map>
 
 using namespace cv;
 using namespace cv::refract;
@@ -148,6 +148,37 @@ Vec2d depthInCamera(const RigModel& rig, int c, const Vec2d& depth)
     return Vec2d(range[0], depth[1] > FAR*depth[0] ? DBL_MAX : range[1]);
 }
 
+//! Sets of nodes that are joined two by two.
+class Sets
+{
+public:
+    explicit Sets(int count) : parent_(count)
+    {
+        for (int i = 0; i < count; i++)
+            parent_[i] = i;
+    }
+    int find(int node)
+    {
+        while (parent_[node] != node)
+            node = parent_[node] = parent_[parent_[node]];
+        return node;
+    }
+    void join(int a, int b) { parent_[find(a)] = find(b); }
+
+private:
+    std::vector<int> parent_;
+};
+
+//! Of each feature the first at its place.
+std::vector<int> firstAtPlace(const Features& features)
+{
+    std::map<std::pair<double, double>, int> places;
+    std::vector<int> first;
+    for (int i = 0; i < features.size(); i++)
+        first.push_back(places.insert({{features.pixels[i].x, features.pixels[i].y}, i}).first->second);
+    return first;
+}
+
 } // namespace
 
 CameraPair::CameraPair(const RigModel& rig, int first_, int second_, const Vec2d& depth_, double search_)
@@ -178,6 +209,46 @@ FeaturePairs partnersNearCurves(const RigModel& rig, const CameraPair& pair, con
         if (forth[i].isClear() && back[forth[i].partner].isClear() && back[forth[i].partner].partner == i)
             pairs.push_back({i, forth[i].partner});
     return pairs;
+}
+
+std::vector<Chain> chainsOf(const std::vector<Features>& features, const std::vector<PairMatches>& matches)
+{
+    const int cameras = (int)features.size();
+    std::vector<int> begin = {0};
+    std::vector<std::vector<int>> first;
+    for (const Features& ofCamera : features)
+    {
+        begin.push_back(begin.back() + ofCamera.size());
+        first.push_back(firstAtPlace(ofCamera));
+    }
+    Sets sets(begin.back());
+    for (const PairMatches& m : matches)
+        for (const auto& pair : m.pairs)
+            sets.join(begin[m.first] + first[m.first][pair.first], begin[m.second] + first[m.second][pair.second]);
+    const int CONTRADICTION = -2;
+    std::map<int, Chain> chains;
+    for (int c = 0; c < cameras; c++)
+        for (int i = 0; i < features[c].size(); i++)
+        {
+            if (first[c][i] != i)
+                continue;
+            int& at = chains.insert({sets.find(begin[c] + i), Chain(cameras, -1)}).first->second[c];
+            at = at == -1 ? i : CONTRADICTION;
+        }
+    std::vector<Chain> result;
+    for (const auto& chain : chains)
+    {
+        int seen = 0;
+        bool contradicts = false;
+        for (int i : chain.second)
+        {
+            seen += i >= 0;
+            contradicts |= i == CONTRADICTION;
+        }
+        if (seen > 1 && !contradicts)
+            result.push_back(chain.second);
+    }
+    return result;
 }
 
 } // namespace tools

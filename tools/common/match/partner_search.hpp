@@ -28,6 +28,20 @@ using FeaturePairs = std::vector<std::pair<int, int>>;
 
 FeaturePairs partnersNearCurves(const RigModel& rig, const CameraPair& pair, const Features& first, const Features& second);
 
+/* Features of the images of one moment that are of one point: chains of pairs. A chain that has two places in one image contradicts
+itself, and is none. */
+
+//! Per camera: which feature; -1: none.
+using Chain = std::vector<int>;
+
+struct PairMatches
+{
+    int first, second;              //!< cameras
+    FeaturePairs pairs;
+};
+
+std::vector<Chain> chainsOf(const std::vector<Features>& features, const std::vector<PairMatches>& matches);
+
 } // namespace tools
 
 #endif // REFRACT_TOOLS_PARTNER_SEARCH_HPP

@@ -2,15 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "match/scene_matches.hpp"
-#include "console/failure.hpp"
-#include "console/median.hpp"
-#include "console/progress.hpp"
 #include "bundle/bundle_adjustment.hpp"
 #include "calibrate/parameter_columns.hpp"
-#include "match/chains.hpp"
+#include "console/failure.hpp"
+#include "console/numbers.hpp"
+#include "console/progress.hpp"
 #include "match/moved_parts.hpp"
 #include "match/moved_rig.hpp"
 #include "match/pair_mistakes.hpp"
+#include "match/partner_search.hpp"
 #include "measure/measurement.hpp"
 
 #include <algorithm>

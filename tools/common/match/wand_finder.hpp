@@ -5,12 +5,25 @@
 #define REFRACT_TOOLS_WAND_FINDER_HPP
 
 #include "calibrate/rig_model.hpp"
-#include "match/chains.hpp"
+#include "match/partner_search.hpp"
 #include "target/ball_image.hpp"
+#include "target/refine_dots.hpp"
+#include <opencv2/refract.hpp>
 #include <cmath>
 
 /* Which of the balls that cameras see at one moment are the two of a wand. */
 namespace tools {
+
+struct BallCenter
+{
+    cv::Point2d pixel;          //!< where the ball's centre is seen
+    double radius;              //!< of the ball, as its image has it at that distance; NaN: nothing can be seen there
+};
+
+/** The middle of a ball's image is not where its centre is seen: off the axis the far side of the image is stretched, and a window adds
+to that. The rays of the outline touch the ball, which says where its centre is.
+@param near about where the centre is, in the frame of the camera: its distance is taken */
+BallCenter centerOfBall(const cv::Ptr<cv::refract::RefractiveCamera>& camera, const DotImage& outline, const cv::Point3d& near);
 
 struct Wand
 {

@@ -4,7 +4,6 @@
 #include "match/wand_matches.hpp"
 #include "bundle/bundle_adjustment.hpp"
 #include "console/failure.hpp"
-#include "console/median.hpp"
 #include "console/numbers.hpp"
 #include "console/progress.hpp"
 #include "match/scene_matches.hpp"

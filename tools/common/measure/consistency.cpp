@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "measure/consistency.hpp"
-#include "console/median.hpp"
-#include "measure/eigen_matrix.hpp"
-#include "measure/point_derivatives.hpp"
 #include "calibrate/parameter_columns.hpp"
+#include "console/numbers.hpp"
 #include "math/dense.hpp"
+#include "measure/eigen_matrix.hpp"
+#include "measure/view_derivatives.hpp"
 #include <opencv2/calib3d.hpp>
 #include <algorithm>
 #include <cmath>

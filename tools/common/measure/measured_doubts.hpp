@@ -4,12 +4,34 @@
 #ifndef REFRACT_TOOLS_MEASURED_DOUBTS_HPP
 #define REFRACT_TOOLS_MEASURED_DOUBTS_HPP
 
+#include "calibrate/rig_data.hpp"
 #include "measure/measured_views.hpp"
 #include "measure/measurement.hpp"
 #include <optional>
 
 /* What speaks against measured points, in sentences; empty: nothing does. */
 namespace tools {
+
+/* Do lengths that were measured agree with those of a target? Their mean ratio is known far better than any of them, by the noise of all
+pixels and the calibration's covariance, in which their errors are common. */
+
+//! Distances between neighbouring points, measured minus true.
+std::vector<double> lengthErrors(const View& view, const std::vector<cv::Point3d>& points);
+
+struct LengthScale
+{
+    double ratio = 1.;      //!< measured over true, the mean of all neighbours on the target; 1 where there are none
+    double sigma;           //!< one standard deviation of it; NaN: unknown
+
+    //! Standard deviations from 1; 0 where unknown.
+    double deviations() const;
+};
+
+/** Of points that were triangulated, or lie on a plane that is exact.
+@param views the target's shape and neighbours. @param results of each view; points that contradict themselves are left out
+@param pixelSigma px, NaN: unknown. @param targetSigma of the target's scale, relative */
+LengthScale lengthScaleOf(const Calibration& calibration, const std::vector<View>& views, const std::vector<Measurement>& results,
+                          double pixelSigma, double targetSigma, const std::optional<cv::Vec4d>& plane = std::nullopt);
 
 //! Pixels that contradict each other by more than noise and calibration explain.
 std::string contradictionIn(const std::vector<MeasuredView>& measured, const std::vector<Measurement>& results);

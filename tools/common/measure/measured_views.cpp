@@ -5,7 +5,6 @@
 #include "console/csv.hpp"
 #include "console/failure.hpp"
 #include "console/table.hpp"
-#include "console/view_names.hpp"
 #include "target/detected_images.hpp"
 #include <algorithm>
 #include <map>
@@ -108,18 +107,6 @@ std::vector<MeasuredView> readPoints(const MeasuredFiles& files, const Calibrati
     return {view};
 }
 
-//! If there is one image for each camera, they are one view, whatever their names.
-void nameSingles(RigImages& sets)
-{
-    std::string name;
-    for (DetectedImages& set : sets.glass)
-        if (set.files.size() > 1 || set.images.size() > 1)
-            return;
-    for (DetectedImages& set : sets.glass)
-        for (DetectedImage& image : set.images)
-            image.stem = name = name.empty() ? image.stem : name;
-}
-
 } // namespace
 
 RigImages readGlassImages(const MeasuredFiles& files, bool triangulates, const Calibration& calibration, const Target* target, bool quiet)
@@ -134,7 +121,7 @@ RigImages readGlassImages(const MeasuredFiles& files, bool triangulates, const C
         sizes[c] = calibration.cameras[c].camera->imageSize();
     RigImages sets = readRigImages(sources, target, sizes, quiet);
     if (triangulates)
-        nameSingles(sets);
+        sets.nameSingles();
     return sets;
 }
 

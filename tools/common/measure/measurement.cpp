@@ -2,12 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "measure/measurement.hpp"
-#include "measure/eigen_matrix.hpp"
-#include "measure/point_derivatives.hpp"
-#include "measure/target_pose.hpp"
 #include "calibrate/rig_model.hpp"
-#include "console/failure.hpp"
 #include "math/dense.hpp"
+#include "measure/eigen_matrix.hpp"
+#include "measure/target_pose.hpp"
+#include "measure/view_derivatives.hpp"
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -5,7 +5,6 @@
 #include "calibrate/parameter_columns.hpp"
 #include "calibrate/window_face.hpp"
 #include <algorithm>
-#include <cmath>
 
 using namespace cv;
 using namespace cv::refract;

@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "measure/target_pose.hpp"
-#include "measure/point_derivatives.hpp"
 #include "calibrate/rig_data.hpp"
 #include "console/failure.hpp"
 #include "math/dense.hpp"
+#include "measure/view_derivatives.hpp"
 #include <opencv2/calib3d.hpp>
 #include <cmath>
 

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "measure/view_derivatives.hpp"
-#include "measure/eigen_matrix.hpp"
 #include "calibrate/parameter_columns.hpp"
+#include "measure/eigen_matrix.hpp"
 #include <opencv2/calib3d.hpp>
 
 using namespace cv;
@@ -63,6 +63,15 @@ Ptr<RefractiveCamera> cameraOf(const RigModel& rig, int camera, bool glass)
 }
 
 } // namespace
+
+PointDerivatives differentiatePoints(const Ptr<RefractiveCamera>& camera, const std::vector<Point3d>& points,
+                                     const Vec3d& rvec, const Vec3d& tvec)
+{
+    Mat ignored, jacobian;
+    refractiveProjectPoints(points, rvec, tvec, camera, ignored, noArray(), jacobian);
+    const Eigen::MatrixXd J = toEigen(jacobian);
+    return {J.leftCols(6), J.rightCols(J.cols() - 6)};
+}
 
 ImageDerivatives differentiateImage(const RigModel& rig, const std::vector<Point3d>& objectPoints, const Vec3d& rvec, const Vec3d& tvec,
                                     const ImageOfView& image)

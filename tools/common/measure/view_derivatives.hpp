@@ -6,6 +6,8 @@
 
 #include "calibrate/rig_model.hpp"
 #include "math/dense.hpp"
+#include <Eigen/Core>
+#include <opencv2/refract.hpp>
 
 /* The information in one view of the target, taken or only planned, about a calibrated rig, to first order:
 
@@ -13,6 +15,16 @@
 
 The pose of the board is unknown, so that only the part of byParameters that no change of the pose can produce gives information. */
 namespace tools {
+
+//! How the pixels of points move, u, v of each point; NaN where there is none.
+struct PointDerivatives
+{
+    Eigen::MatrixXd byPose;             //!< rvec, tvec
+    Eigen::MatrixXd byParameters;       //!< of lens and window
+};
+
+PointDerivatives differentiatePoints(const cv::Ptr<cv::refract::RefractiveCamera>& camera,
+                                     const std::vector<cv::Point3d>& points, const cv::Vec3d& rvec, const cv::Vec3d& tvec);
 
 //! One image of a view: which camera, through its window or not, and the target's points in it.
 struct ImageOfView

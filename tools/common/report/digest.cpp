@@ -5,7 +5,6 @@
 #include "assess/next_step.hpp"
 #include "assess/round_window.hpp"
 #include "calibrate/window_face.hpp"
-#include "console/lines.hpp"
 #include "console/table.hpp"
 #include <algorithm>
 #include <cmath>
@@ -188,7 +187,8 @@ Lines factsWithin(const std::vector<Fact>& facts, size_t room)
 
 } // namespace
 
-std::string errorAtThreeRanges(const RigCalibration& c, const Assessment& a)
+//! "0.26 mm at z = 490.7 mm, 0.33 at 628.1, 0.38 at 718": the worst point at the nearest, the middle and the farthest board.
+static std::string errorAtThreeRanges(const RigCalibration& c, const Assessment& a)
 {
     std::string text;
     for (size_t i = 1; i <= 3 && i < a.errors.size(); i++)

@@ -17,9 +17,6 @@ does not fit is counted, and the tables have it. @param report its file; empty: 
 void printDigest(std::ostream& out, const RigCalibration& calibration, const Assessment& assessment, const Findings& findings,
                  const std::string& report);
 
-//! "0.26 mm at z = 490.7 mm, 0.33 at 628.1, 0.38 at 718": the worst point at the nearest, the middle and the farthest board.
-std::string errorAtThreeRanges(const RigCalibration& calibration, const Assessment& assessment);
-
 } // namespace tools
 
 #endif // REFRACT_TOOLS_DIGEST_HPP

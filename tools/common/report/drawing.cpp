@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "report/drawing.hpp"
-
 #include <opencv2/imgproc.hpp>
 #include <algorithm>
 #include <cmath>
@@ -61,13 +60,15 @@ void drawCurve(cv::Mat& picture, const std::vector<Point2d>& points, const cv::S
     }
 }
 
-void drawRing(cv::Mat& picture, const Point2d& centre, const cv::Scalar& colour, double radius)
+//! Small ring with the point in its middle free.
+static void drawRing(cv::Mat& picture, const Point2d& centre, const cv::Scalar& colour, double radius = 6.)
 {
     if (!isFar(centre))
         cv::circle(picture, fixedPoint(centre), cvRound(radius*(1 << SHIFT)), colour, 1, cv::LINE_AA, SHIFT);
 }
 
-void drawCaption(cv::Mat& picture, const std::string& text, const Point& corner)
+//! A line of text on a dark ground; the corner is its lower left.
+static void drawCaption(cv::Mat& picture, const std::string& text, const Point& corner)
 {
     const double scale = 0.55;
     int baseline = 0;
@@ -75,6 +76,46 @@ void drawCaption(cv::Mat& picture, const std::string& text, const Point& corner)
     cv::rectangle(picture, cv::Rect(corner.x - 6, corner.y - size.height - 6, size.width + 12, size.height + baseline + 10),
                   cv::Scalar::all(20), cv::FILLED);
     cv::putText(picture, text, corner, cv::FONT_HERSHEY_SIMPLEX, scale, cv::Scalar::all(235), 1, cv::LINE_AA);
+}
+
+//! A little darker, so that the lines stand out.
+static cv::Mat ground(const cv::Mat& grey)
+{
+    cv::Mat colour;
+    cv::cvtColor(grey*0.75, colour, cv::COLOR_GRAY2BGR);
+    return colour;
+}
+
+std::vector<Curve> curvesOf(const Calibration& pair, const std::vector<Point2d>& points, const cv::Vec2d& depth)
+{
+    std::vector<cv::Mat> lines;
+    cv::refract::computeRefractiveEpilines(points, 1, pair.cameras[0].camera, pair.cameras[1].camera, pair.extrinsics[1].R,
+                                           pair.extrinsics[1].T, depth, lines);
+    std::vector<Curve> curves;
+    for (const cv::Mat& line : lines)
+        curves.push_back(line.empty() ? Curve() : Curve(line.begin<Point2d>(), line.end<Point2d>()));
+    return curves;
+}
+
+cv::Mat epipolarPicture(const cv::Mat& grey1, const cv::Mat& grey2, const std::vector<Point2d>& points,
+                        const std::vector<Point2d>& partners, const std::vector<Curve>& curves, const std::vector<Curve>& ignored)
+{
+    const int n = (int)points.size();
+    cv::Mat left = ground(grey1), right = ground(grey2);
+    for (int i = 0; i < n; i++)
+    {
+        drawRing(left, points[i], colourOf(i, n));
+        drawCurve(right, ignored[i], colourOf(i, n)*0.8, 7.);
+        drawCurve(right, curves[i], colourOf(i, n));
+    }
+    for (size_t i = 0; i < partners.size(); i++)
+        drawRing(right, partners[i], colourOf((int)i, n));
+    drawCaption(left, "image 1: points", cv::Point(12, 26));
+    drawCaption(right, "image 2: solid through the windows, dashed windows ignored", cv::Point(12, 26));
+    cv::Mat picture(std::max(left.rows, right.rows), left.cols + right.cols + 8, CV_8UC3, cv::Scalar::all(255));
+    left.copyTo(picture(cv::Rect(cv::Point(0, 0), left.size())));
+    right.copyTo(picture(cv::Rect(cv::Point(left.cols + 8, 0), right.size())));
+    return picture;
 }
 
 } // namespace tools

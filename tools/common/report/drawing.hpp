@@ -4,6 +4,7 @@
 #ifndef REFRACT_TOOLS_DRAWING_HPP
 #define REFRACT_TOOLS_DRAWING_HPP
 
+#include "calibrate/calib_file.hpp"
 #include <opencv2/core.hpp>
 #include <vector>
 
@@ -15,11 +16,17 @@ cv::Scalar colourOf(int i, int n);
 //! Anti-aliased, sub-pixel polyline. dash > 0: that many pixels drawn, as many left out.
 void drawCurve(cv::Mat& picture, const std::vector<cv::Point2d>& points, const cv::Scalar& colour, double dash = 0.);
 
-//! Small ring with the point in its middle free.
-void drawRing(cv::Mat& picture, const cv::Point2d& centre, const cv::Scalar& colour, double radius = 6.);
+/* Points of one raw image, and the curves in another on which their partners are. */
 
-//! A line of text on a dark ground; the corner is its lower left.
-void drawCaption(cv::Mat& picture, const std::string& text, const cv::Point& corner);
+typedef std::vector<cv::Point2d> Curve;
+
+//! Of points of camera 1, in the image of camera 2. @param depth z in the frame of camera 1
+std::vector<Curve> curvesOf(const Calibration& pair, const std::vector<cv::Point2d>& points, const cv::Vec2d& depth);
+
+/** Both images side by side; each point, its curve and its partner have one colour.
+@param partners may be empty @param ignored the curves where windows are ignored, dashed */
+cv::Mat epipolarPicture(const cv::Mat& grey1, const cv::Mat& grey2, const std::vector<cv::Point2d>& points,
+                        const std::vector<cv::Point2d>& partners, const std::vector<Curve>& curves, const std::vector<Curve>& ignored);
 
 } // namespace tools
 

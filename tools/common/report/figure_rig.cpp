@@ -9,7 +9,6 @@
 #include <opencv2/imgproc.hpp>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 /* The rig as a whole, to scale, drawn obliquely from above without perspective: cameras as pyramids, what their axes do at the
 windows, the part of each window that they look through, and the measured volume. */

@@ -4,6 +4,7 @@
 #include "report/figures.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "calibrate/window_face.hpp"
+#include "console/progress.hpp"
 #include "console/table.hpp"
 #include "report/plot.hpp"
 #include <algorithm>
@@ -14,9 +15,9 @@ using namespace cv::refract;
 
 namespace tools {
 
-namespace {
-
 using Rows = std::vector<std::vector<double>>;
+
+namespace {
 
 const char* const DIRECT_COLOUR = "#64748b";
 const char* const GLASS_COLOUR = "#0284c7";
@@ -40,7 +41,8 @@ std::vector<Residual> glassResiduals(const RigCalibration& c, int camera)
 
 } // namespace
 
-Figure drawViewRms(const RigCalibration& c, int camera)
+//! RMS of each view, direct and through the window.
+static Figure drawViewRms(const RigCalibration& c, int camera)
 {
     std::vector<int> views;
     Rows rows;
@@ -65,7 +67,8 @@ Figure drawViewRms(const RigCalibration& c, int camera)
     return {plot.svg(), ""};
 }
 
-Figure drawResidualMap(const RigCalibration& c, int camera)
+//! Mean residual of each cell of the image: what is left is not noise.
+static Figure drawResidualMap(const RigCalibration& c, int camera)
 {
     const size_t CORNERS = 6;           // wanted in a cell, for noise to average out
     const Size size = c.data.imageSize[camera];
@@ -95,7 +98,8 @@ Figure drawResidualMap(const RigCalibration& c, int camera)
     return {plot.svg(), ""};
 }
 
-Figure drawCoverage(const RigCalibration& c, int camera)
+//! Where the image was covered by corners, direct and through the window.
+static Figure drawCoverage(const RigCalibration& c, int camera)
 {
     Rows direct, glass;
     for (const View& view : c.data.views)
@@ -116,7 +120,8 @@ Figure drawCoverage(const RigCalibration& c, int camera)
     return {plot.svg(), format("%.0f %% of the image is covered through the window", 100.*coverage(c, camera))};
 }
 
-Figure drawInfluence(const RigCalibration& c, int camera)
+//! How far the normal turns without each view.
+static Figure drawInfluence(const RigCalibration& c, int camera)
 {
     std::vector<int> views;
     Rows rows;
@@ -137,6 +142,73 @@ Figure drawInfluence(const RigCalibration& c, int camera)
          << "plot $views using 1:2 with boxes linecolor rgb '" << GLASS_COLOUR << "' title 'without this view', "
          << sigma << " with lines linecolor rgb '#dc2626' dashtype 2 title 'one standard deviation'\n";
     return {plot.svg(), ""};
+}
+
+static PageValues figure(const Figure& picture, const std::string& title, const std::string& reading)
+{
+    return {{"title", title}, {"svg", picture.svg},
+            {"reading", reading + (picture.note.empty() ? "" : " (" + picture.note + ")") + "."}};
+}
+
+PageList figuresOf(const RigCalibration& c, int camera, Progress& progress)
+{
+    PageList list;
+    auto add = [&](const Figure& picture, const char* title, const char* reading) {
+        list.push_back(figure(picture, title, reading));
+        progress.step();
+    };
+    add(drawSideView(c, camera, 0), "Seen from above",
+        "To scale: the camera at the left, its rays bending at the window, the boards where they were seen");
+    add(drawSideView(c, camera, 1), "Seen from the side",
+        "The same with y pointing down; a window that is not where you mounted it shows here");
+    add(drawCoverage(c, camera), "Where the board was seen",
+        "Empty parts of the image are extrapolated: what is measured there is less certain");
+    add(drawViewRms(c, camera), "Residual of each view",
+        "All bars should be about equally high; one that stands out has wrong corners or a board that moved");
+    if (!c.influences.empty())
+        add(drawInfluence(c, camera), "Which view pulls",
+            "How far the window turns or moves if a view is left out; a bar far above the line means that the result hangs on that view");
+    add(drawResidualMap(c, camera), "Mean residual over the image",
+        "Noise averages out, so most cells should be blue or green; red cells next to each other, where residuals all point the "
+        "same way, are a systematic error. Cells with few corners are left white");
+    return list;
+}
+
+PageValues errorOverRange(const RigCalibration& c, const Assessment& a, Progress& progress)
+{
+    progress.step();
+    return figure(drawErrorOverRange(c, a), "Expected error over the range", "How far a measured point lies from the truth (one "
+                  "standard deviation, 3-D). Where the red line leaves the dashed one, a better calibration would help; "
+                  "where they meet, only a better image would");
+}
+
+void addErrorMaps(PageList& list, const RigCalibration& c, const Assessment& a, Progress& progress)
+{
+    const Vec2d scale = commonScale(a.errors);
+    for (const ErrorMap& map : a.errors)
+    {
+        if (map.seen())
+            list.push_back(figure(drawErrorMap(c, map, scale), format("Expected error at z = %.4g %s", map.range, c.unit.c_str()),
+                                  c.data.cameraCount > 1 ? std::string("Over the image of camera 1; white parts are not seen by ")
+                                                           + (c.data.cameraCount == 2 ? "both cameras" : "any other camera")
+                                                           + ". The colours of all ranges are those of one scale"
+                                                         : "Over the image, for points on a plane square to the camera. The colours of "
+                                                           "all ranges are those of one scale"));
+        progress.step();
+    }
+}
+
+PageList rigFigures(const RigCalibration& c, Progress& progress)
+{
+    const char* reading = "To scale, obliquely from above: the cameras with their numbers, the part of each window that they look "
+                          "through, their middle rays bending at it, and the points that were seen; a camera that is not where you "
+                          "mounted it shows here";
+    PageList list;
+    list.push_back(figure(drawRig(c, 35.), "The rig from behind", reading));
+    progress.step();
+    list.push_back(figure(drawRig(c, -60.), "The rig from the other side", reading));
+    progress.step();
+    return list;
 }
 
 } // namespace tools

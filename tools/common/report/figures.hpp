@@ -5,6 +5,7 @@
 #define REFRACT_TOOLS_FIGURES_HPP
 
 #include "assess/assessment.hpp"
+#include "report/page_template.hpp"
 
 /* The report's pictures, one function each, as SVG text. A picture whose scale needs words returns them beside it. */
 namespace tools {
@@ -21,18 +22,6 @@ Figure drawSideView(const RigCalibration& calibration, int camera, int axis);
 //! All cameras, windows and points from one side, obliquely from above. @param azimuthDeg 0: from behind the cameras, 90: from the right
 Figure drawRig(const RigCalibration& calibration, double azimuthDeg);
 
-//! RMS of each view, direct and through the window.
-Figure drawViewRms(const RigCalibration& calibration, int camera);
-
-//! Mean residual of each cell of the image: what is left is not noise.
-Figure drawResidualMap(const RigCalibration& calibration, int camera);
-
-//! Where the image was covered by corners, direct and through the window.
-Figure drawCoverage(const RigCalibration& calibration, int camera);
-
-//! How far the normal turns without each view.
-Figure drawInfluence(const RigCalibration& calibration, int camera);
-
 //! Expected error of a measured point over the image of camera 1. @param scale of the colours, that all maps of a report share
 Figure drawErrorMap(const RigCalibration& calibration, const ErrorMap& map, cv::Vec2d scale);
 
@@ -41,6 +30,21 @@ cv::Vec2d commonScale(const std::vector<ErrorMap>& maps);
 
 //! The same over the range: worst, typical, of pixel noise alone, and the limits.
 Figure drawErrorOverRange(const RigCalibration& calibration, const Assessment& assessment);
+
+/* The figures of the report as its template takes them: each with a title, and how to read it. Each makes a step of progress. */
+
+class Progress;
+
+//! Of one camera.
+PageList figuresOf(const RigCalibration& calibration, int camera, Progress& progress);
+
+//! The rig from two sides.
+PageList rigFigures(const RigCalibration& calibration, Progress& progress);
+
+PageValues errorOverRange(const RigCalibration& calibration, const Assessment& assessment, Progress& progress);
+
+//! Over the image, at each range.
+void addErrorMaps(PageList& list, const RigCalibration& calibration, const Assessment& assessment, Progress& progress);
 
 } // namespace tools
 

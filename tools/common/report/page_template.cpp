@@ -34,17 +34,11 @@ private:
     }
 };
 
-void PageValues::set(const std::string& name, const std::string& text) { values_.push_back({name, {Value::TEXT, text, false, {}}}); }
-
-void PageValues::set(const std::string& name, bool flag) { values_.push_back({name, {Value::FLAG, "", flag, {}}}); }
-
-void PageValues::set(const std::string& name, const PageList& list) { values_.push_back({name, {Value::LIST, "", false, list}}); }
-
 PageList pageList(const std::vector<std::string>& texts)
 {
     PageList list;
     for (const std::string& text : texts)
-        list.emplace_back("text", text);
+        list.push_back({{"text", text}});
     return list;
 }
 

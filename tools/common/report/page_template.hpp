@@ -4,6 +4,7 @@
 #ifndef REFRACT_TOOLS_PAGE_TEMPLATE_HPP
 #define REFRACT_TOOLS_PAGE_TEMPLATE_HPP
 
+#include <initializer_list>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,23 +17,27 @@ namespace tools {
 class PageValues
 {
 public:
-    PageValues() = default;
-    PageValues(const std::string& name, const std::string& text) { set(name, text); }
+    //! A text, a flag or a list.
+    struct Value
+    {
+        Value(const std::string& ofText) : kind(TEXT), text(ofText) {}
+        Value(const char* ofText) : kind(TEXT), text(ofText) {}
+        Value(bool ofFlag) : kind(FLAG), flag(ofFlag) {}
+        Value(const std::vector<PageValues>& entries) : kind(LIST), list(entries) {}
 
-    void set(const std::string& name, const std::string& text);
-    void set(const std::string& name, const char* text) { set(name, std::string(text)); }
-    void set(const std::string& name, bool flag);
-    void set(const std::string& name, const std::vector<PageValues>& list);
+        enum Kind { TEXT, FLAG, LIST } kind;
+        std::string text = {};
+        bool flag = false;
+        std::vector<PageValues> list = {};
+    };
+
+    PageValues() = default;
+    PageValues(std::initializer_list<std::pair<std::string, Value>> values) : values_(values) {}
+
+    void set(const std::string& name, const Value& value) { values_.emplace_back(name, value); }
 
 private:
     friend class PageConverter;
-    struct Value
-    {
-        enum Kind { TEXT, FLAG, LIST } kind;
-        std::string text;
-        bool flag;
-        std::vector<PageValues> list;
-    };
     std::vector<std::pair<std::string, Value>> values_;
 };
 

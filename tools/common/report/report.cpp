@@ -4,12 +4,12 @@
 #include "report/report.hpp"
 #include "assess/next_step.hpp"
 #include "assess/round_window.hpp"
-#include "calibrate/estimated_parameters.hpp"
+#include "calibrate/parameter_columns.hpp"
 #include "calibrate/window_face.hpp"
 #include "console/progress.hpp"
 #include "console/table.hpp"
+#include "report/figures.hpp"
 #include "report/given_values.hpp"
-#include "report/report_figures.hpp"
 #include "report/report_template.hpp"
 #include "report/summary.hpp"
 #include "report/thumbnails.hpp"
@@ -29,10 +29,7 @@ PageList rowsOf(const std::vector<SummaryRow>& rows)
     PageList list;
     for (const SummaryRow& row : rows)
     {
-        PageValues entry;
-        entry.set("name", row.name);
-        entry.set("cells", pageList(row.cells));
-        list.push_back(entry);
+        list.push_back({{"name", row.name}, {"cells", pageList(row.cells)}});
     }
     return list;
 }
@@ -106,7 +103,7 @@ std::string windowSentence(const RigCalibration& c, int k)
     if (const std::optional<RoundWindow> round = roundWindowOf(c, k))
         return which + (round->shape == "dome" ? " has its centre " : " has its axis ") + round->offsetWords(c.unit)
             + (round->shape == "dome" ? "; in its centre it would not refract." : ".");
-    const double tilt = std::acos(std::min(1., window.normal[2]))*180./CV_PI;
+    const double tilt = tiltDegrees(window);
     return which + format(" is tilted by %.2f°, known to ±%.2g°.", tilt, windowStd(c.fit, k).normalDeg[0]);
 }
 
@@ -144,11 +141,8 @@ void setVerdict(PageValues& page, const RigCalibration& c, const Findings& f)
     PageList limits;
     for (const LimitCheck& limit : f.limits)
     {
-        PageValues entry;
-        entry.set("mark", limit.met() ? "✓" : "✗");
-        entry.set("class", limit.met() ? "met" : "missed");
-        entry.set("text", limit.sentence());
-        limits.push_back(entry);
+        limits.push_back({{"mark", limit.met() ? "✓" : "✗"}, {"class", limit.met() ? "met" : "missed"},
+                          {"text", limit.sentence()}});
     }
     page.set("limits", limits);
     page.set("time", timeText(c));
@@ -157,10 +151,7 @@ void setVerdict(PageValues& page, const RigCalibration& c, const Findings& f)
     PageList notes;
     for (const auto& note : c.label.notes)
     {
-        PageValues entry;
-        entry.set("key", note.first);
-        entry.set("text", note.second);
-        notes.push_back(entry);
+        notes.push_back({{"key", note.first}, {"text", note.second}});
     }
     page.set("notes", notes);
 }
@@ -175,11 +166,7 @@ void setParameters(PageValues& page, const Fit& fit)
     PageList parameters, correlations, heads;
     for (const EstimatedParameter& p : all)
     {
-        PageValues entry;
-        entry.set("name", p.name);
-        entry.set("value", format("%.7g", p.value));
-        entry.set("std", format("%.2g", p.std));
-        parameters.push_back(entry);
+        parameters.push_back({{"name", p.name}, {"value", format("%.7g", p.value)}, {"std", format("%.2g", p.std)}});
     }
     for (const EstimatedParameter& p : window)
     {
@@ -189,14 +176,12 @@ void setParameters(PageValues& page, const Fit& fit)
         for (const EstimatedParameter& q : window)
         {
             const double r = fit.covariance.at<double>(p.column, q.column)/(p.std*q.std);
-            PageValues cell;
-            cell.set("value", format("%.2f", std::round(100.*r)/100. + 0.));    // no minus before 0.00
-            cell.set("colour", format(r < 0 ? "rgba(2,132,199,%.2f)" : "rgba(220,38,38,%.2f)", 0.6*std::abs(r)));
-            cells.push_back(cell);
+            cells.push_back({{"value", format("%.2f", std::round(100.*r)/100. + 0.)},           // no minus before 0.00
+                             {"colour", format(r < 0 ? "rgba(2,132,199,%.2f)" : "rgba(220,38,38,%.2f)", 0.6*std::abs(r))}});
         }
         entry.set("cells", cells);
         correlations.push_back(entry);
-        heads.emplace_back("name", p.name);
+        heads.push_back({{"name", p.name}});
     }
     page.set("parameters", parameters);
     page.set("correlations", correlations);
@@ -229,18 +214,13 @@ void setSightings(PageValues& page, const RigCalibration& c)
                     seenBy[p]++;
                 }
             const int direct = (int)std::count_if(view.direct[k].begin(), view.direct[k].end(), seen);
-            PageValues cell;
-            cell.set("value", (count ? std::to_string(count) : std::string(direct ? "" : "-"))
-                              + (direct ? format("%s%d direct", count ? " + " : "", direct) : ""));
-            cell.set("colour", format("rgba(2,132,199,%.2f)", 0.5*count/(double)view.objectPoints.size()));
-            cells.push_back(cell);
+            cells.push_back({{"value", (count ? std::to_string(count) : std::string(direct ? "" : "-"))
+                                       + (direct ? format("%s%d direct", count ? " + " : "", direct) : "")},
+                             {"colour", format("rgba(2,132,199,%.2f)", 0.5*count/(double)view.objectPoints.size())}});
         }
         for (int count : seenBy)
             pointsSeenBy[count]++;
-        PageValues row;
-        row.set("name", view.stem);
-        row.set("cells", cells);
-        rows.push_back(row);
+        rows.push_back({{"name", view.stem}, {"cells", cells}});
     }
     std::string note;
     for (int count = 1; count <= c.data.cameraCount; count++)
@@ -257,19 +237,12 @@ void setPhotos(PageValues& page, const RigCalibration& c, const std::vector<Phot
     for (const Photo& photo : photos)
     {
         const Thumbnail thumbnail = makeThumbnail(c, photo);
-        PageValues entry;
-        entry.set("uri", thumbnail.uri);
-        entry.set("caption", thumbnail.caption);
-        entry.set("class", thumbnail.suspect ? "suspect" : "");
-        list.push_back(entry);
+        list.push_back({{"uri", thumbnail.uri}, {"caption", thumbnail.caption}, {"class", thumbnail.suspect ? "suspect" : ""}});
         progress.step();
     }
     for (const PhotoScale& step : photoScale(c))
     {
-        PageValues entry;
-        entry.set("colour", step.colour);
-        entry.set("name", step.name);
-        scale.push_back(entry);
+        scale.push_back({{"colour", step.colour}, {"name", step.name}});
     }
     page.set("photos", list);
     page.set("photo_scale", scale);
@@ -335,11 +308,8 @@ std::string makeReport(const RigCalibration& c, const Assessment& assessment, co
     for (int k = 0; k < c.data.cameraCount; k++)
     {
         const std::string name = c.data.cameraCount == 1 ? "Camera" : format("Camera %d", k + 1);
-        PageValues camera;
-        camera.set("name", name);
-        camera.set("figures", figuresOf(c, k, progress));
-        cameras.push_back(camera);
-        heads.emplace_back("name", name);
+        cameras.push_back({{"name", name}, {"figures", figuresOf(c, k, progress)}});
+        heads.push_back({{"name", name}});
     }
     page.set("cameras", cameras);
     setPhotos(page, c, photos, progress);

@@ -2,13 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "report/summary.hpp"
-#include "report/given_values.hpp"
 #include "assess/round_window.hpp"
-#include "calibrate/estimated_parameters.hpp"
+#include "calibrate/parameter_columns.hpp"
 #include "calibrate/units.hpp"
 #include "calibrate/window_face.hpp"
 #include "console/colour.hpp"
 #include "console/table.hpp"
+#include "report/given_values.hpp"
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -136,7 +136,7 @@ static std::vector<SummaryRow> normalRows(const RigCalibration& c)
         return format("(%.5f, %.5f, %.5f)", n[0], n[1], n[2]);
     }));
     rows.push_back(row(c, "tilt against the optical axis, deg",
-                       [&](int k) { return format("%.3f", std::acos(std::min(1., window(k).normal[2]))*180./CV_PI); }));
+                       [&](int k) { return format("%.3f", tiltDegrees(window(k))); }));
     rows.push_back(row(c, "normal +- (two principal), deg", [&](int k) {
         const std::vector<double> std = deviation(k).normalDeg;
         return format("%.2g, %.2g", std[0], std[1]);
@@ -316,7 +316,8 @@ std::vector<SummaryRow> adviceRows(const Advice& advice)
     return rows;
 }
 
-std::string placeHeading(const RigCalibration& c)
+//! The heading of its first column: "normal +-, deg", or of a dome's centre.
+static std::string placeHeading(const RigCalibration& c)
 {
     const GlassWindow window = c.fit.rig.cameras[0]->window();
     return std::string(placeName(window)) + " +-, " + placeUnit(window, c.unit);

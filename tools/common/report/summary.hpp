@@ -36,8 +36,6 @@ std::vector<SummaryRow> budgetRows(const Assessment& assessment);
 
 //! Cells: std of the normals, worst point, the calibration's part.
 std::vector<SummaryRow> adviceRows(const Advice& advice);
-//! The heading of its first column: "normal +-, deg", or of a dome's centre.
-std::string placeHeading(const RigCalibration& calibration);
 
 //! Verdict, tables and findings, for a terminal.
 void printSummary(std::ostream& out, const RigCalibration& calibration, const Assessment& assessment,

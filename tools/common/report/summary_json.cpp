@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "report/summary_json.hpp"
-#include "calibrate/estimated_parameters.hpp"
 #include "assess/next_step.hpp"
 #include "assess/round_window.hpp"
+#include "calibrate/parameter_columns.hpp"
 #include "calibrate/units.hpp"
 #include "calibrate/window_face.hpp"
 #include "console/json.hpp"
@@ -80,7 +80,7 @@ void addPlace(const RigCalibration& c, int camera, Json& json)
     }
     json.set("normal", listOf(window.normal));
     json.set("normal_std_deg", std.normalDeg);
-    json.set("tilt_deg", std::acos(std::min(1., window.normal[2]))*180./CV_PI);
+    json.set("tilt_deg", tiltDegrees(window));
     json.set("distance", !hasDifferentMedia(window) && !(std.distance > 0.) ? Json() : estimate(window.distance, std.distance));
     if (window.shape == WINDOW_BENT)
     {

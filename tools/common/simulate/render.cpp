@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "simulate/render.hpp"
-
 #include <opencv2/imgproc.hpp>
 #include <cmath>
 
@@ -13,6 +12,7 @@ using cv::Matx33d;
 using cv::Size;
 using cv::Vec2d;
 using cv::Vec3d;
+using cv::Point2d;
 
 namespace {
 
@@ -142,7 +142,43 @@ Mat paintFine(const Paint& paint, const Mat& coordinates)
     return levels;
 }
 
+const double SAME_SURFACE = 1e-5;       // of the distance
+
+std::vector<SceneRay> sheetOf(const LightSource& source, bool window)
+{
+    std::vector<Point2d> pixels;
+    for (int v = 0; v < source.emitter.camera->imageSize().height; v++)
+        pixels.emplace_back(source.emitter.line, v);
+    return raysOf(pixels, source.view(window));
+}
+
+//! What of the points is in the image, and no surface is before it.
+TrueLine seenOf(const std::vector<Vec3d>& points, const TexturedScene* scene, const Viewpoint& camera)
+{
+    TrueLine line;
+    if (points.empty())
+        return line;
+    std::vector<Point2d> pixels;
+    cv::refract::refractiveProjectPoints(std::vector<cv::Point3d>(points.begin(), points.end()), camera.R, camera.T, camera.camera, pixels);
+    const std::vector<SceneRay> rays = raysOf(pixels, camera);
+    const cv::Size size = camera.camera->imageSize();
+    for (size_t i = 0; i < points.size(); i++)
+    {
+        const double distance = rays[i].direction.dot(points[i] - rays[i].origin);
+        const bool hidden = scene && !(firstSurface(*scene, rays[i]).intersection.s > distance*(1 - SAME_SURFACE));
+        const bool inside = pixels[i].x >= -0.5 && pixels[i].y >= -0.5 && pixels[i].x < size.width - 0.5 && pixels[i].y < size.height - 0.5;
+        if (!inside || hidden)
+            continue;
+        line.pixels.push_back(pixels[i]);
+        line.points.push_back(points[i]);
+    }
+    return line;
+}
+
 } // namespace
+
+//! On the board, and not on what is behind it. @param s, t in units of --square, (0, 0) the first point
+bool isOnBoard(const Target& target, double s, double t) { return isInside(s, t, squaresOf(target).width, squaresOf(target).height); }
 
 //! What emitters add, on the fine grid. @param pose in camera 1
 static void lightBoard(const Target& target, const BoardPose& pose, const Mat& coordinates, const Illumination& light,
@@ -160,8 +196,6 @@ static void lightBoard(const Target& target, const BoardPose& pose, const Mat& c
         }
     addLight(light, points, reflectance, nullptr, levels);
 }
-
-bool isOnBoard(const Target& target, double s, double t) { return isInside(s, t, squaresOf(target).width, squaresOf(target).height); }
 
 Mat render(const Target& target, const BoardPose& pose, const Viewpoint& view, const Exposure& exposure, uint64_t seed,
            const Illumination* light)
@@ -195,6 +229,35 @@ BoardPose inOtherCamera(const BoardPose& pose, const RigidTransform& cam2_from_c
 {
     const RigidTransform board = cam2_from_cam1*transformOf(pose.rvec, pose.tvec);
     return {rotationVector(board.R), board.T};
+}
+
+TrueLine trueLine(const LightSource& source, bool window, const TexturedScene& scene, const Viewpoint& camera)
+{
+    std::vector<Vec3d> points;
+    for (const SceneRay& ray : sheetOf(source, window))
+    {
+        const SurfaceHit hit = firstSurface(scene, ray);
+        if (hit.surface)
+            points.push_back(ray.at(hit.intersection.s));
+    }
+    return seenOf(points, &scene, camera);
+}
+
+TrueLine trueLine(const LightSource& source, bool window, const Target& target, const BoardPose& pose, const Viewpoint& camera)
+{
+    const cv::Matx33d R = rotationMatrix(pose.rvec);
+    const Plane plane(pose.tvec, Vec3d(R(0, 2), R(1, 2), R(2, 2)), Vec3d(1, 1, 1));
+    std::vector<Vec3d> points;
+    for (const SceneRay& ray : sheetOf(source, window))
+    {
+        Intersection hit;
+        if (!plane.intersect(ray, hit))
+            continue;
+        const Vec3d onTarget = R.t()*(ray.at(hit.s) - pose.tvec)*(1/target.square());
+        if (isOnBoard(target, onTarget[0], onTarget[1]))
+            points.push_back(ray.at(hit.s));
+    }
+    return seenOf(points, nullptr, camera);
 }
 
 } // namespace tools

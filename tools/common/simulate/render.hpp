@@ -28,11 +28,21 @@ Lines and fringes light what is printed and its rim; a white square has the leve
 cv::Mat render(const Target& target, const BoardPose& pose, const Viewpoint& view, const Exposure& exposure, uint64_t seed,
                const Illumination* light = nullptr);
 
-//! On the board, and not on what is behind it. @param s, t in units of --square, (0, 0) the first point
-bool isOnBoard(const Target& target, double s, double t);
-
 //! Camera 2's pose of a target whose pose in camera 1 is known.
 BoardPose inOtherCamera(const BoardPose& pose, const RigidTransform& cam2_from_cam1);
+
+//! The middle of a sheet of light on what a camera sees: a point for each v of the emitter.
+struct TrueLine
+{
+    std::vector<cv::Point2d> pixels;
+    std::vector<cv::Vec3d> points;      //!< camera 1's frame
+};
+
+//! On a scene: of points that the camera sees.
+TrueLine trueLine(const LightSource& source, bool window, const TexturedScene& scene, const Viewpoint& camera);
+
+//! On a target. @param pose in camera 1
+TrueLine trueLine(const LightSource& source, bool window, const Target& target, const BoardPose& pose, const Viewpoint& camera);
 
 } // namespace tools
 

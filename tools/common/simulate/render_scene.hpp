@@ -6,7 +6,7 @@
 
 #include "simulate/exposure.hpp"
 #include "simulate/solid_texture.hpp"
-#include "simulate/viewpoint.hpp"
+#include "simulate/surface.hpp"
 
 #include <memory>
 #include <vector>

@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "simulate/surface.hpp"
-
+#include "calibrate/window_face.hpp"
+#include <algorithm>
 #include <cmath>
 
 namespace tools {
 
 using cv::Vec3d;
+using cv::Point2d;
 
 namespace {
 
@@ -49,6 +51,31 @@ bool Plane::intersect(const SceneRay& ray, Intersection& first) const
         return false;
     first = {s, normal_};
     return true;
+}
+
+std::vector<SceneRay> raysOf(const std::vector<Point2d>& pixels, const Viewpoint& view)
+{
+    std::vector<cv::Point3d> origins, directions;
+    cv::refract::refractiveUnprojectPoints(pixels, origins, directions, view.camera);
+    const WindowFace last = WindowFace::last(view.camera->window());
+    const cv::Matx33d back = view.R.t();
+    std::vector<SceneRay> rays;
+    rays.reserve(pixels.size());
+    for (size_t i = 0; i < pixels.size(); i++)
+    {
+        // The origin is not where light is, but where the line of the ray meets the window's axis, or nearly does.
+        const Vec3d origin(origins[i]), direction(directions[i]);
+        rays.push_back({back*(origin - view.T), back*direction, std::max(last.along(origin, direction), 0.)});
+    }
+    return rays;
+}
+
+double pixelAngle(const Viewpoint& view)
+{
+    const Point2d centre = 0.5*Point2d(cv::Size2d(view.camera->imageSize()));
+    const std::vector<SceneRay> rays = raysOf({centre, centre + Point2d(1, 0)}, view);
+    const double angle = cv::norm(rays[1].direction - rays[0].direction);
+    return std::isnan(angle) ? 0 : angle;
 }
 
 } // namespace tools

@@ -5,7 +5,9 @@
 #define REFRACT_TOOLS_SURFACE_HPP
 
 #include <opencv2/core.hpp>
+#include <opencv2/refract.hpp>
 #include <limits>
+#include <vector>
 
 /* Surfaces that rays intersect. All in the frame of the scene, which is that of camera 1. */
 namespace tools {
@@ -71,6 +73,25 @@ private:
     cv::Vec3d point_, normal_, right_, down_;
     cv::Size2d half_;
 };
+
+//! A camera and where it stands in the scene.
+struct Viewpoint
+{
+    cv::Ptr<cv::refract::RefractiveCamera> camera;
+    cv::Matx33d R = cv::Matx33d::eye();         //!< scene -> camera
+    cv::Vec3d T = cv::Vec3d();
+    //! The camera in the light of blue, green and red; empty: it is the same in all.
+    std::vector<cv::Ptr<cv::refract::RefractiveCamera>> colours = {};
+
+    //! z in the camera's frame.
+    double depthOf(const cv::Vec3d& point) const { return (R*point + T)[2]; }
+};
+
+//! What pixels look along, from where it leaves the window on.
+std::vector<SceneRay> raysOf(const std::vector<cv::Point2d>& pixels, const Viewpoint& view);
+
+//! Angle between the rays of neighbouring pixels in the middle of the image, radians; 0 where there are no rays.
+double pixelAngle(const Viewpoint& view);
 
 } // namespace tools
 

@@ -6,7 +6,6 @@
 #include "console/keys.hpp"
 
 #include <opencv2/core.hpp>
-#include <algorithm>
 #include <cmath>
 
 namespace tools {

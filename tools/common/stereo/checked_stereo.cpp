@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "stereo/checked_stereo.hpp"
-#include "stereo/depth_search.hpp"
+#include "match/features.hpp"
 #include "stereo/depth_picture.hpp"
 #include "match/pair_mistakes.hpp"
 #include "stereo/point_sigma.hpp"

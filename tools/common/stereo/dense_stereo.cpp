@@ -2,16 +2,184 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "stereo/dense_stereo.hpp"
-#include "stereo/coarse_depth.hpp"
-#include "stereo/epipolar_check.hpp"
+#include "stereo/match_support.hpp"
 #include "stereo/rectified_match.hpp"
-#include "stereo/refine_disparity.hpp"
+#include "stereo/slabs.hpp"
+#include <opencv2/imgproc.hpp>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
 
 namespace tools {
 
 using cv::Mat;
+using cv::Point;
+using cv::Size;
 
 namespace {
+
+const Size PATCH(13, 13), NEAR(7, 7);
+const int STEPS = 2, ENOUGH = 200;      // of a few values nothing is said
+const float NONE = std::numeric_limits<float>::quiet_NaN();
+
+//! The other image as the first would show it if the disparity were right; 32F.
+Mat warped(const Mat& second, const Mat& disparity)
+{
+    Mat mapX(disparity.size(), CV_32F), mapY(disparity.size(), CV_32F), result;
+    for (int y = 0; y < disparity.rows; y++)
+    {
+        const float* d = disparity.ptr<float>(y);
+        float* u = mapX.ptr<float>(y);
+        for (int x = 0; x < disparity.cols; x++)
+            u[x] = (float)x - d[x];
+        mapY.row(y).setTo(y);
+    }
+    cv::remap(second, result, mapX, mapY, cv::INTER_CUBIC, cv::BORDER_REPLICATE);
+    return result;
+}
+
+Mat sums(const Mat& values, Size around)
+{
+    Mat result;
+    cv::boxFilter(values, result, CV_32F, around, Point(-1, -1), false, cv::BORDER_CONSTANT);
+    return result;
+}
+
+//! Of both images' slopes: it leans to neither.
+Mat meanSlope(const Mat& a, const Mat& b, int byX, int byY)
+{
+    Mat slopeA, slopeB;
+    cv::Sobel(a, slopeA, CV_32F, byX, byY, 3, 1./8);
+    cv::Sobel(b, slopeB, CV_32F, byX, byY, 3, 1./8);
+    return 0.5*(slopeA + slopeB);
+}
+
+/* The mean of the neighbours where all are of one surface: steps of a matcher's fractions are finer than a patch, which would
+leave them as they are. */
+void levelSteps(Mat& disparity, const Mat& weight)
+{
+    const double ONE_SURFACE = 1.5, FAR_AWAY = 1e9;
+    const Mat known = weight > 0, element = cv::getStructuringElement(cv::MORPH_RECT, NEAR);
+    Mat low = disparity.clone(), high = disparity.clone();
+    low.setTo(FAR_AWAY, ~known);
+    high.setTo(-FAR_AWAY, ~known);
+    cv::erode(low, low, element);
+    cv::dilate(high, high, element);
+    const Mat count = sums(weight, NEAR);
+    Mat(sums(disparity.mul(weight), NEAR)/count).copyTo(disparity, known & (high - low < ONE_SURFACE) & (count > 0.9*NEAR.area()));
+}
+
+float quantile(std::vector<float>& values, double part)
+{
+    const auto at = values.begin() + (int)(part*(values.size() - 1));
+    std::nth_element(values.begin(), at, values.end());
+    return *at;
+}
+
+/* By how much the patches' own sigmas must grow to tell what neighbours on smooth surfaces differ by: noise of pixels is not
+independent, patches are not moved copies of each other. Third differences along rows and columns, of disparities so far apart
+that no pixel is in two patches, know of no surface up to second order; 95 % of them shall be within 1.96 sigma. */
+double inflation(const Mat& disparity, const Mat& sigma)
+{
+    const int APART = PATCH.width + NEAR.width + 2, EVERY = 3;      // 2: of the interpolation
+    const float EDGE = 3, weights[] = {1, -3, 3, -1};
+    std::vector<float> ratios;
+    for (const Point step : {Point(APART, 0), Point(0, APART)})
+        for (int y = 0; y + 3*step.y < disparity.rows; y += EVERY)
+            for (int x = 0; x + 3*step.x < disparity.cols; x += EVERY)
+            {
+                float difference = 0, variance = 0;
+                for (int k = 0; k < 4; k++)
+                {
+                    const float s = weights[k]*sigma.at<float>(Point(x, y) + k*step);
+                    difference += weights[k]*disparity.at<float>(Point(x, y) + k*step);
+                    variance += s*s;
+                }
+                if (std::abs(difference) < EDGE && variance > 0)
+                    ratios.push_back(std::abs(difference)/std::sqrt(variance));
+            }
+    return (int)ratios.size() < ENOUGH ? NONE : quantile(ratios, 0.95)/1.96;
+}
+
+//! How little two rectified images are alike round each pixel of the first, at its disparity; infinite where that is NaN.
+Mat unlikeness(const Mat& first, const Mat& second, const Mat& disparity)
+{
+    Mat columns(disparity.size(), CV_32F), rows(disparity.size(), CV_32F), partners, result;
+    for (int y = 0; y < disparity.rows; y++)
+        for (int x = 0; x < disparity.cols; x++)
+        {
+            columns.at<float>(y, x) = (float)x - disparity.at<float>(y, x);
+            rows.at<float>(y, x) = (float)y;
+        }
+    cv::remap(second, partners, columns, rows, cv::INTER_LINEAR);
+    cv::absdiff(first, partners, partners);
+    cv::blur(partners, result, cv::Size(9, 9));
+    result.convertTo(result, CV_32F);
+    result.setTo(INFINITY, disparity != disparity);
+    return result;
+}
+
+//! Disparities of images of half the size; where more than one slab has an answer, that which looks most alike.
+Mat coarseDisparity(const RectifiedRig& rig, const Mat& image1, const Mat& image2, const MatcherOptions& options)
+{
+    const double scale = 0.5;
+    const Slabs slabs(rig, scale);
+    Mat best, least;
+    for (int k = 0; k < slabs.count(); k++)
+    {
+        const Mat plane(1, 1, CV_64F, cv::Scalar(slabs.depth(k)));
+        const RectifiedImages pair = rectify(rig, image1, image2, plane, plane, scale);
+        const Mat first = forMatcher(rig, pair.image[0]), second = forMatcher(rig, pair.image[1]);
+        const Mat found = match(first, second, slabs.from(k), slabs.disparities(k), options);
+        if (slabs.count() == 1)
+            return fromMatcher(rig, found);
+        const Mat unlike = unlikeness(first, second, found);
+        if (best.empty())
+        {
+            best = Mat(found.size(), CV_32F, NAN);
+            least = Mat(found.size(), CV_32F, INFINITY);
+        }
+        const Mat better = unlike < least;
+        found.copyTo(best, better);
+        unlike.copyTo(least, better);
+    }
+    return fromMatcher(rig, best);
+}
+
+/** @param first, second rectified, 8-bit grey; disparity along the rows
+@param disparity CV_32F, NaN: none */
+RefinedDisparity refineDisparity(const Mat& first, const Mat& second, const Mat& disparity)
+{
+    const float ANY = 1e-3f;        // a patch without contrast moves nowhere
+    const Mat known = disparity == disparity;
+    Mat weight, I1, I2, current = disparity.clone(), sigma, across;
+    known.convertTo(weight, CV_32F, 1./255);
+    first.convertTo(I1, CV_32F);
+    second.convertTo(I2, CV_32F);
+    current.setTo(0, ~known);
+    const Mat original = current.clone();
+    for (int step = 0; step < STEPS; step++)
+    {
+        levelSteps(current, weight);
+        const Mat there = warped(I2, current), difference = (there - I1).mul(weight);
+        const Mat slope = meanSlope(I1, there, 1, 0).mul(weight);
+        const Mat contrast = sums(slope.mul(slope), PATCH) + ANY, pull = sums(slope.mul(difference), PATCH);
+        const Mat move = pull/contrast;     // I2(x - d - move) is I1(x)
+        cv::add(current, move, current, known);
+        if (step < STEPS - 1)
+            continue;
+        const Mat left = cv::max(sums(difference.mul(difference), PATCH) - pull.mul(move), 0.f);
+        cv::sqrt(left/cv::max(sums(weight, PATCH) - 1, 1.f)/contrast, sigma);
+        const Mat fall = meanSlope(I1, there, 0, 1).mul(weight);
+        across = sums(fall.mul(difference), PATCH)/(sums(fall.mul(fall), PATCH) + ANY);
+    }
+    const Mat none = ~known | (cv::abs(current - original) > 1);
+    for (Mat* values : {&current, &sigma, &across})
+        values->setTo(NONE, none);
+    sigma *= inflation(current, sigma);
+    return {current, sigma, across};
+}
 
 void refine(const RectifiedRig& rig, DenseStereo& result, const Mat& first, const Mat& second)
 {
@@ -33,6 +201,17 @@ void findPoints(const RectifiedRig& rig, const RectifiedImages& rectified, Dense
 }
 
 } // namespace
+
+/** The first pass: depths of both rectified images, CV_32F of the rig's size, from images of half the size. They stay as they
+were if hardly anything was matched. */
+static void findCoarseDepth(const RectifiedRig& rig, const Mat& image1, const Mat& image2, const MatcherOptions& options, Mat& depth1,
+                     Mat& depth2)
+{
+    const Mat coarse = coarseDisparity(rig, image1, image2, options);
+    const int FEW = 64;
+    if (cv::countNonZero(coarse == coarse) > FEW)
+        cv::refract::refractiveRectifiedDepth(coarse, rig.P1, rig.P2, rig.size(), depth1, depth2);
+}
 
 DenseStereo matchPair(const RectifiedRig& rig, const Mat& image1, const Mat& image2, const MatcherOptions& options)
 {

@@ -5,10 +5,25 @@
 #define REFRACT_TOOLS_DENSE_STEREO_HPP
 
 #include "stereo/rectified_rig.hpp"
+#include <opencv2/core.hpp>
 
 /* Dense stereo through windows, in two passes. First the images are made half as large, rectified for one plane and matched;
 then rectified anew for the depths found, at full size, where an ordinary matcher sees an ordinary pair. */
 namespace tools {
+
+/* A matcher that fits a parabola to the costs of three whole pixels has sub-pixel disparities that are biased towards whole pixels
+(pixel locking), by up to a fifth of a pixel, and states no uncertainty. Least squares refines them: the shift along the row that
+makes the patch of the other image equal to that of the first (Lucas and Kanade 1981, in one dimension). */
+
+struct RefinedDisparity
+{
+    cv::Mat disparity;      //!< CV_32F; NaN where it was, or where the patch would move by more than a pixel
+    /** CV_32F, one standard deviation; NaN as disparity. Patches with more contrast have a smaller one; the scale of all is that
+    by which neighbours on smooth surfaces differ, and NaN if there are too few. */
+    cv::Mat sigma;
+    //! CV_32F, row in the first image - row in the second, px: about 0 if the calibration is right; NaN as disparity.
+    cv::Mat rowOffset;
+};
 
 struct MatcherOptions
 {

@@ -11,6 +11,19 @@
 /* A depth map as a picture. */
 namespace tools {
 
+/* A rectified pair as pictures, to look at and for other matchers. */
+
+//! Side by side with horizontal lines, on which partners lie; one above the other with vertical lines for a vertical rig.
+cv::Mat sideBySide(const cv::Mat& rectified1, const cv::Mat& rectified2, bool vertical);
+
+//! What writeRectified() writes, in its order.
+std::vector<std::string> rectifiedFiles(const std::string& prefix);
+
+/** PREFIXleft.png, PREFIXright.png, PREFIXpair.png (sideBySide) and PREFIXdisparity.tiff.
+@param disparity CV_32F, NaN: none */
+void writeRectified(const std::string& prefix, const cv::Mat& rectified1, const cv::Mat& rectified2, const cv::Mat& disparity,
+                    bool vertical);
+
 //! The depths that are neither NaN nor infinite, in ascending order.
 std::vector<float> sortedDepths(const cv::Mat& depth);
 

@@ -5,7 +5,7 @@
 #define REFRACT_TOOLS_DEPTH_SEARCH_HPP
 
 #include "match/depth_range.hpp"
-#include "match/partners.hpp"
+#include "match/features.hpp"
 
 /* The depth range of a scene, from features that are matched in both raw images. */
 namespace tools {

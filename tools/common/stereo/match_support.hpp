@@ -4,11 +4,17 @@
 #ifndef REFRACT_TOOLS_MATCH_SUPPORT_HPP
 #define REFRACT_TOOLS_MATCH_SUPPORT_HPP
 
+#include "stereo/rectified_match.hpp"
 #include <opencv2/core.hpp>
 
 /* A matcher fills areas without texture from their neighbours, and finds a best match for noise too. Afterwards the two patches of a
 match are compared: both must have texture, and the same. */
 namespace tools {
+
+/** Removes the points whose two raw pixels are not images of one point: each is more than a pixel off the other's epipolar curve.
+Where an edge of the scene makes the maps of the second pass wrong, the matcher still finds a match in the row.
+@param points CV_32FC3, camera-1 frame, of each pixel of the rectified image 1 */
+void removeInconsistentPoints(const RectifiedRig& rig, const RectifiedImages& rectified, const cv::Mat& disparity, cv::Mat& points);
 
 struct MatchSupport
 {

@@ -5,12 +5,19 @@
 #define REFRACT_TOOLS_ROW_CHECK_HPP
 
 #include "stereo/dense_stereo.hpp"
-
 #include <string>
 
 /* Row errors of a pair against what its calibration may be off by, and what could explain them. An error along the rows cannot be
 seen: it is a wrong depth. So each cause that explains the errors across the rows is asked for its errors along them. */
 namespace tools {
+
+//! How far the matches of a region of rectified1 miss their rows.
+struct RowCell
+{
+    cv::Point at;           //!< pixel of the match that is the median
+    double offset;          //!< px: the median
+    double sigma;           //!< of the median, from the differences in the region
+};
 
 struct RowCheck
 {

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "stereo/wide_search.hpp"
+#include "match/depth_range.hpp"
 #include "console/failure.hpp"
-#include "stereo/depth_search.hpp"
 #include "stereo/match_support.hpp"
 #include "stereo/rectified_match.hpp"
 #include "stereo/slabs.hpp"

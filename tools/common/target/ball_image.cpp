@@ -13,8 +13,6 @@ namespace tools {
 
 namespace {
 
-double radiusOf(const DotImage& dot) { return std::sqrt(dot.area()/CV_PI); }
-
 //! An ellipse by the moments of its pixels; false: they are of another shape.
 bool isEllipse(const Mat& mask, const Point& corner, DotImage& dot)
 {
@@ -113,7 +111,7 @@ public:
     BallModel(const Mat& grey, const Mat& background, const DotImage& start) : grey_(grey), background_(background), origin_(start.centre)
     {
         const double WIDE = 1.5, RIM = 4.;
-        const double reach = WIDE*radiusOf(start) + RIM;
+        const double reach = WIDE*start.radius() + RIM;
         part_ = Rect(Point(cvFloor(origin_.x - reach), cvFloor(origin_.y - reach)),
                      Point(cvCeil(origin_.x + reach) + 1, cvCeil(origin_.y + reach) + 1)) & Rect(Point(), grey.size());
     }
@@ -259,7 +257,7 @@ bool refine(const Mat& grey, const Mat& background, const Candidate& candidate, 
     const double SHARP = 4.;                                    // blurs in a radius, where the height can be told from them
     const DotImage& start = candidate.dot;
     const BallModel model(grey, background, start);
-    const double radius = radiusOf(start), level = grey.at<uchar>(Point(cvRound(start.centre.x), cvRound(start.centre.y)));
+    const double radius = start.radius(), level = grey.at<uchar>(Point(cvRound(start.centre.x), cvRound(start.centre.y)));
     BallModel::Parameters p = model.startOf(start, level), steps;
     for (int k = 0; k < BallModel::COUNT; k++)
         steps[k] = k < 2 || k == 5 ? 1e-3 : k < 5 ? 1e-4/radius : k == 8 || k == 9 ? 1e-2/radius : 1e-2;
@@ -268,7 +266,7 @@ bool refine(const Mat& grey, const Mat& background, const Candidate& candidate, 
     Normal normal(model, p, steps);
     if (model.pixels() <= 2*BallModel::COUNT || !fitted(model, p, normal, steps))
         return false;
-    if (SHARP*p[5] < radiusOf(model.outline(p)))
+    if (SHARP*p[5] < model.outline(p).radius())
     {
         steps[10] = height;
         normal = Normal(model, p, steps);
@@ -279,7 +277,7 @@ bool refine(const Mat& grey, const Mat& background, const Candidate& candidate, 
     ball.contrast = (bright ? 1 : -1)*(p[7] - p[6] - background.at<uchar>(Point(cvRound(start.centre.x), cvRound(start.centre.y))));
     const double variance = normal.squares/(model.pixels() - BallModel::COUNT);
     ball.std = centreStd(model, normal);
-    const double growth = radiusOf(ball.outline)/radius;
+    const double growth = ball.outline.radius()/radius;
     return start.out(ball.outline.centre) < MOVED && growth < RESIZED && growth > 1/RESIZED && p[5] < BLURRED*radius*growth
         && ball.contrast > 0 && std::sqrt(variance) < AMISS*ball.contrast && ball.std > 0 && std::isfinite(ball.std);
 }
@@ -288,7 +286,7 @@ bool refine(const Mat& grey, const Mat& background, const Candidate& candidate, 
 bool refineAny(const Mat& grey, const Mat& background, const Candidate& candidate, bool bright, BallImage& ball)
 {
     const double LARGE = 25., WIDE = 1.6, RIM = 6., SMOOTH = 0.6;       // px; of a radius; px that were taken together, these two
-    const double radius = radiusOf(candidate.dot), times = std::ceil(radius/LARGE), reach = WIDE*radius + RIM*times;
+    const double radius = candidate.dot.radius(), times = std::ceil(radius/LARGE), reach = WIDE*radius + RIM*times;
     if (times <= 1)
         return refine(grey, background, candidate, bright, ball);
     const Point2d corner = candidate.dot.centre - Point2d(reach, reach), middle(0.5, 0.5);

@@ -58,12 +58,6 @@ bool isChessboard(const std::vector<Point2d>& points, Size size, const Mat& grey
     return isEvenGrid(points, size) && isAlternating(points, size, grey);
 }
 
-//! The longer side first.
-Size sorted(Size size)
-{
-    return Size(std::max(size.width, size.height), std::min(size.width, size.height));
-}
-
 std::vector<Point2f> detectByOldChessboard(const Mat& grey, Size size, int seconds)
 {
     return searchLimited(seconds, size.area(), [&] {
@@ -101,10 +95,10 @@ std::vector<Point2d> detectChessboard(const Mat& grey, Size size, Size* other, i
             return !mayBeInView(seen, size, grey)
                 && isAlternating(std::vector<Point2d>(seen.corners.begin(), seen.corners.end()), seen.size, grey); };
         const SeenChessboard glance = other ? lookForChessboard(grey) : lookForChessboard(grey, isCutOff);
-        const Size seenSize = sorted(glance.size) != sorted(size) ? sorted(glance.size) : Size();
+        const Size seenSize = longerFirst(glance.size) != longerFirst(size) ? longerFirst(glance.size) : Size();
         if (other)
             *other = seenSize;
-        if (seenSize.width > sorted(size).width || seenSize.height > sorted(size).height || !mayBeInView(glance, size, grey))
+        if (seenSize.width > longerFirst(size).width || seenSize.height > longerFirst(size).height || !mayBeInView(glance, size, grey))
             return {};
         corners = detectByOldChessboard(grey, size, seconds);
         if (corners.empty() || !isChessboard(toDouble(corners), size, grey))

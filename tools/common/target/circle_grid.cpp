@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "target/circle_grid.hpp"
-#include "console/median.hpp"
+#include "console/numbers.hpp"
 #include "target/dot_lattice.hpp"
 #include "target/limited_search.hpp"
 #include "target/refine_dots.hpp"
@@ -10,7 +10,6 @@
 #include <opencv2/features2d.hpp>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 using namespace cv;
 

@@ -7,8 +7,7 @@
 #include "console/numbers.hpp"
 #include "console/progress.hpp"
 #include "console/view_names.hpp"
-#include "target/corners_vnl.hpp"
-#include "target/points_csv.hpp"
+#include "target/detected_points.hpp"
 #include "target/target_search.hpp"
 
 #include <algorithm>

@@ -4,8 +4,8 @@
 #include "target/dot_target.hpp"
 #include "console/csv.hpp"
 #include "console/failure.hpp"
-#include "console/lines.hpp"
 #include "console/numbers.hpp"
+#include "console/table.hpp"
 #include "target/dot_matching.hpp"
 #include "target/refine_dots.hpp"
 

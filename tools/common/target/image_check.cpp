@@ -93,6 +93,14 @@ std::string areThey(const std::vector<const Checked*>& images)
     return listed(pathsOf(images)) + (images.size() > 1 ? " are " : " is ");
 }
 
+//! What to do about an image of another size than was expected.
+std::string sizeAdvice(cv::Size image, cv::Size expected)
+{
+    if (image == cv::Size(expected.height, expected.width))
+        return "width and height are exchanged: use images as the camera stored them, not turned; a size is WIDTHxHEIGHT";
+    return "use the images of this camera, not resized";
+}
+
 void requireKnownSize(const std::vector<Checked>& images, const std::vector<ImageSource>& sources)
 {
     for (const Checked& first : images)
@@ -159,13 +167,6 @@ void requireColour(const std::string& path, Channel channel)
 {
     if (channel != BRIGHTNESS && !factsOf(path).coloured)
         refuseGrey(path, channel);
-}
-
-std::string sizeAdvice(cv::Size image, cv::Size expected)
-{
-    if (image == cv::Size(expected.height, expected.width))
-        return "width and height are exchanged: use images as the camera stored them, not turned; a size is WIDTHxHEIGHT";
-    return "use the images of this camera, not resized";
 }
 
 std::vector<cv::Size> checkImages(const std::vector<ImageSource>& sources, const std::vector<std::vector<std::string>>& files,

@@ -29,9 +29,6 @@ std::vector<cv::Size> checkImages(const std::vector<ImageSource>& sources, const
 //! Throws Failure if one of the three colours is asked for and the image is grey.
 void requireColour(const std::string& path, Channel channel);
 
-//! What to do about an image of another size than was expected.
-std::string sizeAdvice(cv::Size image, cv::Size expected);
-
 } // namespace tools
 
 #endif // REFRACT_TOOLS_IMAGE_CHECK_HPP

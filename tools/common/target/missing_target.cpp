@@ -16,16 +16,10 @@ namespace {
 
 const size_t TRIED = 2;             // images that a guess is tried on: each takes a second
 
-//! The longer side first.
-cv::Size sorted(cv::Size size)
-{
-    return cv::Size(std::max(size.width, size.height), std::min(size.width, size.height));
-}
-
 //! A part of the target has at most its size.
 bool mayBePart(cv::Size chessboard, const Target& target)
 {
-    const cv::Size whole = sorted(target.size());
+    const cv::Size whole = longerFirst(target.size());
     return !chessboard.empty() && chessboard.width <= whole.width && chessboard.height <= whole.height;
 }
 
@@ -113,7 +107,7 @@ cv::Size chessboardIn(const std::vector<Without>& images, Channel channel)
 {
     std::vector<Without> seen(images.begin(), images.begin() + (long)std::min(images.size(), TRIED));
     for (Without& image : seen)
-        image.chessboard = sorted(lookForChessboard(readGrey(image.path, channel)).size);
+        image.chessboard = longerFirst(lookForChessboard(readGrey(image.path, channel)).size);
     return seen.size() > 1 ? usualSize(seen) : seen[0].chessboard;
 }
 
@@ -153,7 +147,7 @@ std::string explainMissing(const std::vector<Without>& images, const std::string
         // A smaller board, or one that is covered in the same way everywhere: nothing in the images tells which. But one less in both
         // directions are squares that were counted.
         const std::string other = otherTargetText(quotedNames(first), target, usual);
-        if (usual + cv::Size(1, 1) == sorted(target.size()))
+        if (usual + cv::Size(1, 1) == longerFirst(target.size()))
             return other;
         if (images.size() > 1 && !otherChessboard(images).empty())
             return other + "; or, if the board has more, " + partAdvice(images, target, channel);

@@ -5,7 +5,6 @@
 #define REFRACT_TOOLS_NEW_FILES_HPP
 
 #include <chrono>
-#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <string>

@@ -5,10 +5,14 @@
 #define REFRACT_TOOLS_PARTIAL_CHESSBOARD_HPP
 
 #include <opencv2/core.hpp>
+#include <algorithm>
 #include <functional>
 #include <vector>
 
 namespace tools {
+
+//! The longer side first.
+inline cv::Size longerFirst(cv::Size size) { return cv::Size(std::max(size.width, size.height), std::min(size.width, size.height)); }
 
 //! Of a few pixels about one.
 double brightnessAt(const cv::Mat& grey, const cv::Point2f& pixel);

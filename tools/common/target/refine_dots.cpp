@@ -20,8 +20,6 @@ DotImage dotOf(const RotatedRect& box)
     return {Point2d(box.center), Matx22d(2/box.size.width, 0, 0, 2/box.size.height)*turn};
 }
 
-double radiusOf(const DotImage& dot) { return std::sqrt(dot.area()/CV_PI); }
-
 //! Brightness that changes evenly over a part of the image: the sums of a least-squares fit, and its value.
 struct Plane
 {
@@ -40,7 +38,7 @@ struct Plane
 //! How much brighter the pixels of a part of the image are than half-way between inside and outside; empty if that has no meaning.
 Mat_<float> overHalf(const Mat& grey, const Rect& part, const DotImage& edge, double reach)
 {
-    const double INSIDE = 0.8, OUTSIDE = 1.1, BLUR = 1.5/radiusOf(edge);
+    const double INSIDE = 0.8, OUTSIDE = 1.1, BLUR = 1.5/edge.radius();
     Plane inside, outside;
     const auto placeOf = [&](int y, int x) { return Point2d(part.x + x, part.y + y) - edge.centre; };
     for (int y = 0; y < part.height; y++)
@@ -101,7 +99,7 @@ DotImage refined(const Mat& grey, const DotImage& dot, double reach)
             return dot;
         edge = dotOf(fitEllipseDirect(points));
         edge.centre += Point2d(part.tl());
-        const double growth = radiusOf(edge)/radiusOf(dot);
+        const double growth = edge.radius()/dot.radius();
         if (!(dot.out(edge.centre) < FARTHEST) || !(growth < RESIZED && growth > 1/RESIZED))
             return dot;
     }

@@ -17,6 +17,7 @@ struct DotImage
     cv::Matx22d toCircle;       //!< ellipse about its centre -> unit circle
     double out(const cv::Point2d& p) const { return cv::norm(toCircle*cv::Vec2d(p.x - centre.x, p.y - centre.y)); }
     double area() const { return CV_PI/std::abs(cv::determinant(toCircle)); }
+    double radius() const { return std::sqrt(area()/CV_PI); }       //!< of a circle of this area
 };
 
 /** Fits ellipses to the edges of dots: where the image is half as bright as between what is inside and what is round it, both of

@@ -97,7 +97,7 @@ void TargetSearch::lookForOthers(const std::vector<int>& which)
     forEach(which, [&](int i) {
         const cv::Size seen = lookForChessboard(readGrey(paths_[i], channel_)).size, whole = target_.size();
         if (seen != whole && seen != cv::Size(whole.height, whole.width))
-            results_[i].other = cv::Size(std::max(seen.width, seen.height), std::min(seen.width, seen.height));
+            results_[i].other = longerFirst(seen);
     });
 }
 
