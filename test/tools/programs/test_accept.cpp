@@ -72,6 +72,24 @@ private:
     }
 };
 
+//! The first points of a table, of one place each and of no image. @param count 30 are those of the first board
+std::string placesAlone(const std::string& file, int count)
+{
+    std::istringstream csv(readFile(file));
+    std::ostringstream places("id,x,y,z\n", std::ios::ate);
+    std::string line;
+    std::getline(csv, line);
+    for (int i = 0; i < count && std::getline(csv, line); i++)
+    {
+        std::vector<std::string> cells;
+        std::istringstream row(line);
+        for (std::string cell; std::getline(row, cell, ',');)
+            cells.push_back(cell);
+        places << (i < 30 ? cells[1] : format("%d", i)) << ',' << cells[6] << ',' << cells[7] << ',' << cells[8] << '\n';
+    }
+    return places.str();
+}
+
 nlohmann::json jsonOf(const std::string& file) { return nlohmann::json::parse(readFile(file)); }
 
 bool hasProgram(const std::string& name) { return std::system(("command -v " + name + " >/dev/null 2>&1").c_str()) == 0; }
@@ -218,20 +236,19 @@ TEST_CASE("refract_accept refuses images that calibrated, and tells when it cann
     writeFile(out / "other.png", "abd");
     CHECK(runTool(withImages + out / "other.png").code == 0);
 
-    // Spheres: places alone, of no image.
-    std::istringstream csv(readFile(bench.folder / "points.csv"));
-    std::ostringstream places("id,x,y,z\n", std::ios::ate);
-    std::string line;
-    std::getline(csv, line);
-    for (int i = 0; i < 30 && std::getline(csv, line); i++)
+    // Without their pixels and by other names, places that calibrated are where the calibration sees its own corners.
+    for (const int count : {180, 30, 3})
     {
-        std::vector<std::string> cells;
-        std::istringstream row(line);
-        for (std::string cell; std::getline(row, cell, ',');)
-            cells.push_back(cell);
-        places << cells[1] << ',' << cells[6] << ',' << cells[7] << ',' << cells[8] << '\n';
+        writeFile(out / "places.csv", placesAlone(bench.folder / "calibrated.csv", count));
+        writeFile(out / "one.csv", std::string(HEADING) + format("side,,0,,2,%.4f,0.01\n", 2*SQUARE));
+        const ToolResult places = runTool(bench.accept(out / "places.csv", out / "one.csv", "2"));
+        CAPTURE(count, places.out, places.err);
+        CHECK(places.code == 1);
+        CHECK(mentions(places.err, "these images calibrated"));
     }
-    writeFile(out / "spheres.csv", places.str());
+
+    // Spheres: places alone, of no image.
+    writeFile(out / "spheres.csv", placesAlone(bench.folder / "points.csv", 30));
     const ToolResult spheres = runTool(bench.accept(out / "spheres.csv", lengths, "2") + " --summary=" + out / "s.json");
     CAPTURE(spheres.out, spheres.err);
     CHECK(spheres.code == 0);

@@ -170,31 +170,47 @@ std::vector<std::string> namesThatCalibrated(const std::vector<std::string>& ima
     return names;
 }
 
+/** Where an image shows its points: in the pixels that stand beside them, or, of points without, where the calibration has them. Those
+of an image that calibrated come out where they went in, but for what their rays missed each other by. */
+static RigPixels shownBy(const TestPoints& points, const std::string& image, const Calibration& calibration)
+{
+    RigPixels pixels = points.pixelsOf(image, calibration.cameras.size());
+    std::vector<cv::Point3d> there;
+    for (const TestPoint& point : points.points)
+        if (point.image == image)
+            there.push_back(point.X);
+    for (size_t c = 0; c < pixels.size() && !points.havePixels; c++)
+        cv::refract::refractiveProjectPoints(there, rotationVector(calibration.extrinsics[c].R), calibration.extrinsics[c].T,
+                                             calibration.cameras[c].camera, pixels[c]);
+    return pixels;
+}
+
 bool requireOtherImages(const TestPoints& points, const std::vector<std::string>& images, const Calibration& calibration)
 {
-    if (calibration.provenance.images.empty() || !points.havePixels)
+    const std::vector<CalibrationImage>& calibrating = calibration.provenance.images;
+    if (calibrating.empty())
         return false;
     const double tolerance = sameImageTolerance(pixelSigmaOf(calibration));
     std::vector<std::string> used;
     std::vector<CalibrationImage> shown;
     for (const std::string& image : images)
     {
-        const RigPixels pixels = points.pixelsOf(image, calibration.cameras.size());
+        const RigPixels pixels = shownBy(points, image, calibration);
         bool calibrated = false;
         for (size_t c = 0; c < pixels.size(); c++)
         {
             shown.push_back({image, (int)c, "", meanOfSeen(pixels[c]), pixels[c]});
-            calibrated = calibrated || findImage(calibration.provenance.images, (int)c, pixels[c], tolerance);
+            calibrated = calibrated || findImage(calibrating, (int)c, pixels[c], tolerance);
         }
         if (calibrated)
             used.push_back(image);
     }
     if (used.empty())
-        used = movedAlike(calibration.provenance.images, shown, tolerance);
+        used = movedAlike(calibrating, shown, tolerance);
     if (!used.empty())
         throw Failure("these images calibrated, stored anew or cropped perhaps, or their targets were not moved since, so that they prove "
                       "nothing: " + listed(used) + ". Take others, with the length standard where nothing was calibrated");
-    return true;
+    return points.havePixels;
 }
 
 } // namespace tools

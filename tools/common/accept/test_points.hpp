@@ -35,8 +35,9 @@ struct TestPoints
 Throws Failure that names file and line. */
 TestPoints readTestPoints(const std::string& path, size_t cameras);
 
-/** Throws Failure that names the images of points whose pixels are those of images that calibrated.
-@return whether it can be told */
+/** Throws Failure that names the images of points whose pixels are those of images that calibrated; of points without pixels, those where
+the calibration sees them.
+@return whether it can be told for certain */
 bool requireOtherImages(const TestPoints& points, const std::vector<std::string>& images, const Calibration& calibration);
 
 //! Those that have the name of an image that calibrated: all that can be told of points without pixels.
