@@ -297,6 +297,12 @@ TEST_CASE("Images of two cameras in one folder are told by their names", "[mista
         CHECK(text.find("(--direct='...', --glass='...', --direct2='...', --glass2='...')") != std::string::npos);
         CHECK(text.find("--unpaired") == std::string::npos);
     }
+    // Names that do not tell: pairs are on two maps of the direct image on the other.
+    const std::string untold = said([](int camera, int i) { return format("img%03d", (camera*41 + i*59) % 97); });
+    CAPTURE(untold);
+    CHECK(untold.find("calibrated apart, so they are of several cameras") != std::string::npos);
+    CHECK(untold.find("--unpaired") == std::string::npos);
+    CHECK(untold.find("something else") == std::string::npos);
 }
 
 TEST_CASE("Images of two cameras in one folder, with boards that are held by hand, are told by their names", "[mistakes][slow]")

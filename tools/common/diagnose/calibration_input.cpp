@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "diagnose/calibration_input.hpp"
+#include <algorithm>
 
 using namespace cv::refract;
 
@@ -36,6 +37,27 @@ CalibrationInput oneCamera(const CalibrationInput& input, int camera)
             one.data.views.push_back(alone);
         }
     return one;
+}
+
+std::vector<Explanation> bestBelow(double most, const std::vector<Explanation>& tried)
+{
+    double best = most;
+    for (const Explanation& e : tried)
+        best = std::min(best, e.px);
+    std::vector<Explanation> explaining;
+    for (const Explanation& e : tried)
+        if (e.px < most && e.px <= EXPLAINS_AS_WELL*best)
+            explaining.push_back(e);
+    return explaining;
+}
+
+std::vector<Explanation> withoutFreer(const std::vector<Explanation>& explaining)
+{
+    std::vector<Explanation> kept;
+    for (const Explanation& e : explaining)
+        if (kept.empty() || e.px < kept.back().px)
+            kept.push_back(e);
+    return kept;
 }
 
 } // namespace tools

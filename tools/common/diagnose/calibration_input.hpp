@@ -36,6 +36,13 @@ struct Mistake
     bool (*appliesTo)(const CalibrationInput& input);           //!< whether this input can have it
     Explanation (*undo)(const CalibrationInput& input);         //!< undoes it and fits the same images again
 };
+const double EXPLAINS_AS_WELL = 3.;         // times what the best of them leaves
+
+//! Those that leave less than that, and are about as good as the best of them.
+std::vector<Explanation> bestBelow(double most, const std::vector<Explanation>& tried);
+
+//! Of mistakes in the order of what they leave free, those that leave less than any before.
+std::vector<Explanation> withoutFreer(const std::vector<Explanation>& explaining);
 
 } // namespace tools
 

@@ -9,6 +9,7 @@
 #include "diagnose/fit_quality.hpp"
 #include "diagnose/image_disagreement.hpp"
 #include "diagnose/image_mistakes.hpp"
+#include "diagnose/pair_maps.hpp"
 #include "diagnose/value_mistakes.hpp"
 #include <algorithm>
 #include <iterator>
@@ -25,26 +26,12 @@ const double MIN_IMPLAUSIBLE_PX = 1.;   // then the given values do not belong t
 const double CLEAN = 1.3;               // times what the lens's own images leave: no more than noise
 const double EXPLAINS = 0.3;            // a mistake undone leaves less than this share
 const double VALUE_BEFORE = 1.1;        // what changes less of what is given comes first, unless it leaves so much more
-const double AS_GOOD = 3.;              // as the best of them
 const double MEDIAN = 1.1774;           // length of an error of two coordinates, in their standard deviations
 const size_t MOST_POSSIBLE = 4;         // mix-ups that are fitted without geometry asking for it: a second each
 
 const char* const NOTHING_TRIED = "neither another square, thickness, index or medium, nor images exchanged or wrongly paired "
     "explain it. Check --pattern and --size, that the images are from this camera with the same zoom and focus, that the target "
     "is flat, and the images themselves";
-
-//! Those that leave less than that, and are about as good as the best of them.
-std::vector<Explanation> bestBelow(double most, const std::vector<Explanation>& tried)
-{
-    double best = most;
-    for (const Explanation& e : tried)
-        best = std::min(best, e.px);
-    std::vector<Explanation> explaining;
-    for (const Explanation& e : tried)
-        if (e.px < most && e.px <= AS_GOOD*best)
-            explaining.push_back(e);
-    return explaining;
-}
 
 //! What leaves no more than noise ends the search.
 bool isFound(const std::vector<Explanation>& explaining, double clean)
@@ -112,6 +99,7 @@ const Mistake MISTAKES[] = {
 const Mistake LAST_MISTAKES[] = {
     {[](const CalibrationInput& input) { return !isRig(input); }, camerasInOneFolder},
     {[](const CalibrationInput& input) { return hasPairs(input.data); }, oddImages},
+    {[](const CalibrationInput& input) { return hasPairs(input.data) && !isRig(input); }, pairsOfTwoCameras},
     {[](const CalibrationInput& input) { return hasPairs(input.data); }, unpairedImages},
     {isRig, unrelatedViews}};
 
@@ -177,7 +165,7 @@ std::vector<std::string> told(const CalibrationInput& input, const std::vector<E
     for (const Explanation& e : explaining)
         best = std::min(best, e.px);
     const Explanation shape = best > clean && best < NO_FIT ? wrongShape(input) : Explanation{"", NO_FIT};
-    if (AS_GOOD*shape.px < best)
+    if (EXPLAINS_AS_WELL*shape.px < best)
         return {fits(input, shape, clean)};
     std::vector<std::string> sentences;
     for (const Explanation& e : explaining)
@@ -227,7 +215,7 @@ std::vector<std::string> imageMistakes(const CalibrationInput& input, const MixU
         if (!sentence.empty())
             return {sentence};
     const bool isUnpaired = pairsFromOneMap(input.data) > WINDOWS_PX;
-    for (const auto& explain : {camerasInOneFolder, oddImages})
+    for (const auto& explain : {camerasInOneFolder, oddImages, pairsOfTwoCameras})
     {
         const Explanation some = isUnpaired ? explain(input) : Explanation{"", NO_FIT};
         if (some.px < sound)
@@ -264,11 +252,11 @@ std::vector<std::string> toldBeside(const CalibrationInput& input, const Contrad
                                     double clean)
 {
     std::vector<std::string> sentences = {value.sentence};
-    for (const Explanation& e : bestBelow(AS_GOOD*MEDIAN*value.sigma, others))
+    for (const Explanation& e : bestBelow(EXPLAINS_AS_WELL*MEDIAN*value.sigma, others))
     {
         const bool isBest = e.px < MEDIAN*value.sigma/VALUE_BEFORE;
         sentences.insert(isBest ? sentences.begin() : sentences.end(), fits(input, e, clean));
-        if (AS_GOOD*e.px < MEDIAN*value.sigma)
+        if (EXPLAINS_AS_WELL*e.px < MEDIAN*value.sigma)
             return {sentences[0]};
     }
     return sentences;
@@ -307,7 +295,7 @@ std::vector<std::string> diagnose(const CalibrationInput& input, const MixUps& m
         sentences = confirmed(input, mixUps.possible, MOST_POSSIBLE, clean);
         if (!sentences.empty())
             return sentences;
-        explaining = explanationsOf(input, LAST_MISTAKES, most, clean, plain);
+        explaining = withoutFreer(explanationsOf(input, LAST_MISTAKES, most, clean, plain));
     }
     for (const Explanation& e : explaining)
         sentences.push_back(fits(input, e, clean));

@@ -62,12 +62,6 @@ void update(const RigData& data, const RigOptions& options, const RoughLenses& l
 
 std::vector<int> allCameras(const RigData& data);
 
-//! How far pairs are from one map of the direct image on that through the window, of the worst camera. A window is such a map, nearly.
-double pairsFromOneMap(const RigData& data);
-
-//! Views of which the pair of a camera is off the map that most of its pairs are on; empty: none, or no map is that of most.
-std::vector<int> pairsOffMap(const RigData& data, int camera);
-
 //! Disagreements::camerasApart of these images.
 double camerasApart(const RigData& data, const RigOptions& options);
 

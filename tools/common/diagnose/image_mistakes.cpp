@@ -6,6 +6,7 @@
 #include "console/table.hpp"
 #include "diagnose/fit_quality.hpp"
 #include "diagnose/image_disagreement.hpp"
+#include "diagnose/pair_maps.hpp"
 #include <opencv2/calib3d.hpp>
 #include <algorithm>
 #include <cctype>
@@ -87,7 +88,7 @@ std::map<std::string, std::vector<View>> byCameraInName(const std::vector<View>&
         std::vector<std::string> runs = runsOf(view.stem);
         if (runs.size() <= run)
             return {};
-        const std::string key = cameraIn(runs, run);
+        const std::string key = "'" + cameraIn(runs, run) + "'";
         std::string rest;
         for (size_t i = 0; i < runs.size(); i++)
             rest += i == run ? "*" : runs[i];
@@ -245,29 +246,55 @@ Explanation imagesOfOtherMoments(const CalibrationInput& input)
     return best;
 }
 
-Explanation camerasInOneFolder(const CalibrationInput& input)
+namespace {
+
+//! @param groups name and images of each camera
+Explanation calibratedApart(const CalibrationInput& input, const std::map<std::string, std::vector<View>>& groups)
 {
-    const size_t runs = input.data.views.empty() ? 0 : runsOf(input.data.views[0].stem).size();
     const bool hasDirect = std::any_of(input.data.views.begin(), input.data.views.end(), [](const View& v) { return v.hasDirect(0); });
     const std::string options = hasDirect ? "--direct='...', --glass='...', --direct2='...', --glass2='...'"
                                           : "--glass='...', --glass2='...'";
+    std::string sentence;
+    double worst = 0.;
+    for (const auto& [name, views] : groups)
+    {
+        RigData data = input.data;
+        data.views = views;
+        worst = std::max(worst, medianErrorOfFit(data, input.options));
+        sentence += (sentence.empty() ? "those of " : " and of ") + name;
+    }
+    if (groups.size() < 2)
+        return {"", NO_FIT};
+    return {sentence + " calibrated apart, so they are of several cameras, or something changed between them: give each camera its own ("
+            + options + ")", worst};
+}
+
+} // namespace
+
+Explanation camerasInOneFolder(const CalibrationInput& input)
+{
+    const size_t runs = input.data.views.empty() ? 0 : runsOf(input.data.views[0].stem).size();
     Explanation best{"", NO_FIT};
     for (size_t run = 0; run < runs && input.data.cameraCount == 1; run++)
-    {
-        std::string sentence;
-        double worst = 0.;
-        for (const auto& [key, views] : byCameraInName(input.data.views, run))
-        {
-            RigData data = input.data;
-            data.views = views;
-            worst = std::max(worst, medianErrorOfFit(data, input.options));
-            sentence += (sentence.empty() ? "those of '" : " and of '") + key + "'";
-        }
-        if (!sentence.empty())
-            best = better(best, {sentence + " calibrated apart, so they are of several cameras, or something changed between them: give "
-                                 "each camera its own (" + options + ")", worst});
-    }
+        best = better(best, calibratedApart(input, byCameraInName(input.data.views, run)));
     return best;
+}
+
+Explanation pairsOfTwoCameras(const CalibrationInput& input)
+{
+    std::map<std::string, std::vector<View>> groups;
+    for (const std::vector<int>& group : input.data.cameraCount == 1 ? pairsOfTwoMaps(input.data, 0) : std::vector<std::vector<int>>())
+    {
+        std::vector<View> views;
+        std::vector<std::string> names;
+        for (int i : group)
+        {
+            views.push_back(input.data.views[i]);
+            names.push_back(input.data.views[i].stem);
+        }
+        groups[listed(names)] = views;
+    }
+    return calibratedApart(input, groups);
 }
 
 Explanation oddImages(const CalibrationInput& input)

@@ -26,6 +26,9 @@ Explanation imagesOfOtherMoments(const CalibrationInput& input);
 //! Images of several cameras are given for those of one, which their names show: cam1_3, cam2_3.
 Explanation camerasInOneFolder(const CalibrationInput& input);
 
+//! The same of pairs, which show it whatever their names are.
+Explanation pairsOfTwoCameras(const CalibrationInput& input);
+
 //! Few pairs are off what most of them show: their images through the window are left out.
 Explanation oddImages(const CalibrationInput& input);
 
