@@ -114,6 +114,9 @@ TEST_CASE("Mistakes with images and options are told by their names within secon
         {"no file", direct(f / "absent/*") + glass + size, {"no file matches"}},
         {"a folder", direct(f / "half") + glass + size, {"is a folder"}},
         {"a video", direct(f / "film.mp4") + glass + size, {"is a video"}},
+        {"one file for two cameras", good + glass + size + " --direct2='" + STEREO + "/direct1/*' --glass2='" + STEREO + "/glass2/*'",
+         {"direct1/air01.jpg' is one of the direct images of camera 1 and one of the direct images of camera 2"}},
+        {"no lens", glass + size + " --glass2='" + STEREO + "/glass2/*'", {"there are no images for the lens"}},
         {"names that do not pair", direct(STEREO + "/direct1/air*") + size + " --glass='" + STEREO + "/measure1/*'", {"there is no pair"}},
     };
     double most = 0.;

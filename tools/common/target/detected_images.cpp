@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <set>
 
@@ -119,6 +120,24 @@ void requireDistinctStems(const DetectedImages& set, const std::string& source)
 
 } // namespace
 
+namespace {
+
+//! No image is one of two cameras, nor one without and with the window. @param files of each source
+void requireOwnFiles(const std::vector<ImageSource>& sources, const std::vector<std::vector<std::string>>& files)
+{
+    const auto nameOf = [&](size_t s) { return cv::format("the %s of camera %d", sources[s].name.c_str(), sources[s].camera + 1); };
+    std::map<std::filesystem::path, size_t> known;
+    for (size_t s = 0; s < files.size(); s++)
+        for (const std::string& file : files[s])
+        {
+            const size_t first = known.insert({std::filesystem::weakly_canonical(file), s}).first->second;
+            if (first != s)
+                throw Failure("'" + file + "' is one of " + nameOf(first) + " and one of " + nameOf(s) + ": give each its own images");
+        }
+}
+
+} // namespace
+
 bool isPointFile(const std::string& source)
 {
     const std::string OPENPTV = "_targets";
@@ -138,6 +157,7 @@ std::vector<DetectedImages> readDetectedImages(const std::vector<ImageSource>& s
         files.push_back(isPointFile(source.source) ? std::vector<std::string>() : expandGlob(source.source));
         count += files.back().size();
     }
+    requireOwnFiles(sources, files);
     const std::vector<cv::Size> sizes = checkImages(sources, files, channel, quiet);
     std::vector<std::unique_ptr<TargetSearch>> searches;        // null: of a point file
     for (size_t s = 0; s < sources.size(); s++)
