@@ -324,6 +324,10 @@ TEST_CASE("What would make a test better than it is, is refused or remarked", "[
     CHECK(boards.code == 1);
     CHECK(mentions(boards.err, "--pixel-sigma=0.0001"));
     CHECK(runTool(bench.accept(points, lengths, "2") + " --pixel-sigma=0.0001").code == 1);
+    // Less than the rays show, by no more than the calibration's own error could be: that error is one for all points, and no noise.
+    const ToolResult half = runTool(bench.accept(points, lengths, "2") + " --pixel-sigma=0.07");
+    CAPTURE(half.out, half.err);
+    CHECK(half.code == 1);
 
     // sx, sy, sz beside pixels.
     std::istringstream csv(readFile(points));

@@ -64,7 +64,7 @@ PixelNoise pixelNoiseOf(const Calibration& calibration, const TestPoints& points
         return stated > 0 ? PixelNoise{stated, remarksOfStated(points, stated, calibrated, none)} : PixelNoise{calibrated, {}};
     }
     const ShownNoise shown(calibration, measurementOf(points, calibration));
-    if (stated > 0 && shown.isMoreThan(stated))
+    if (stated > 0 && shown.refutes(stated))
         throw Failure(format("--pixel-sigma=%.3g: the pixels of '", stated) + points.source
                       + format("' have a noise of %.2g px, as the rays of a point miss each other by that much; leave it out, or give what "
                                "is so", shown.sigma()));

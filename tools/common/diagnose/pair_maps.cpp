@@ -3,7 +3,7 @@
 
 #include "diagnose/pair_maps.hpp"
 #include "diagnose/image_disagreement.hpp"
-#include "console/median.hpp"
+#include "console/numbers.hpp"
 #include <opencv2/calib3d.hpp>
 #include <algorithm>
 

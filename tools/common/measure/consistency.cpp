@@ -22,6 +22,7 @@ const double NOT_KNOWN = std::numeric_limits<double>::quiet_NaN();
 
 // Of residuals, in standard deviations: what noise may do, what it cannot, and what cannot even be used.
 const double USUAL = 3., FEW = 5., GROSS = 20.;
+const double CERTAIN = 4.;              // of the noise that points show
 const double MEDIAN = 0.6745;           // of |N(0, 1)|
 const double GROSS_PIXELS = 2.;         // no corner that was found is farther off
 const double NOISIER = 3.;              // images may be so much noisier than those of the calibration
@@ -43,6 +44,8 @@ struct ConsistencyResidual
     double pixels, expected;        //!< RMS per degree of freedom; expected: one standard deviation; NaN where there is no point
     int dof;                        //!< coordinates - 3
     MatrixXd byPoint;               //!< 2 rows of each camera that sees it
+    Eigen::VectorXd left;           //!< px, of each degree of freedom
+    MatrixXd byParameters;          //!< what each parameter of the calibration does to them, a row each; none: it has no covariance
 };
 
 class ConsistencyResiduals
@@ -83,14 +86,14 @@ public:
             e.segment(2*k, 2) << error.x, error.y;
         }
         if (dof < 1 || !J.allFinite() || !e.allFinite())
-            return {NOT_KNOWN, NOT_KNOWN, dof, J};
+            return {NOT_KNOWN, NOT_KNOWN, dof, J, {}, {}};
         const MatrixXd over = refract::QR(J).Q().rightCols(dof);
         const Eigen::VectorXd w = refract::transposeTimesVector(over, e);
-        const MatrixXd S = covarianceOf(i, views, over);
+        const MatrixXd byParameters = byParametersOf(i, views, over), S = covarianceOf(byParameters, dof);
         const double expected = std::sqrt(S.trace()/dof);
         if (!(sigma_ > 0))
-            return {std::sqrt(w.squaredNorm()/dof), expected, dof, J};
-        return {std::sqrt(w.dot(refract::LDLT(S).solve(w))/dof)*expected, expected, dof, J};
+            return {std::sqrt(w.squaredNorm()/dof), expected, dof, J, w, byParameters};
+        return {std::sqrt(w.dot(refract::LDLT(S).solve(w))/dof)*expected, expected, dof, J, w, byParameters};
     }
 
 private:
@@ -102,11 +105,10 @@ private:
         int column, place;              //!< of its parameters; of R and T, if it is not the first
     };
 
-    MatrixXd covarianceOf(size_t i, const std::vector<size_t>& views, const MatrixXd& over) const
+    MatrixXd byParametersOf(size_t i, const std::vector<size_t>& views, const MatrixXd& over) const
     {
-        MatrixXd S = sigma_*sigma_*MatrixXd::Identity(over.cols(), over.cols());
         if (!covariance_.size())
-            return S;
+            return {};
         MatrixXd A = MatrixXd::Zero(over.rows(), covariance_.rows());
         for (size_t k = 0; k < views.size(); k++)
         {
@@ -116,8 +118,14 @@ private:
             if (views[k] > 0)
                 A.block(2*k, camera.place, 2, 6) = d.byPose.middleRows(2*i, 2);
         }
-        const MatrixXd a = refract::transposeTimes(A, over);
-        return S + refract::product(refract::transposeTimes(a, covariance_), a);
+        return refract::transposeTimes(A, over);
+    }
+    MatrixXd covarianceOf(const MatrixXd& byParameters, int dof) const
+    {
+        const MatrixXd S = sigma_*sigma_*MatrixXd::Identity(dof, dof);
+        if (!byParameters.size())
+            return S;
+        return S + refract::product(refract::transposeTimes(byParameters, covariance_), byParameters);
     }
 
     const Measurement& m_;
@@ -150,6 +158,21 @@ double timesNoisier(const std::vector<ConsistencyResidual>& residuals, double pi
     return times > byChance ? times : 1.;
 }
 
+//! The squares of what no change of parameters takes from it. @param H a row for each number of left
+double squaresBeside(MatrixXd H, const Eigen::VectorXd& left)
+{
+    const double TIED = 1e-10;              // parameters that do the same are as good as one
+    for (Eigen::Index k = 0; k < H.cols(); k++)
+    {
+        const double length = H.col(k).norm();
+        if (length > 0)
+            H.col(k) /= length;
+    }
+    const MatrixXd N = refract::transposeTimes(H, H) + TIED*MatrixXd::Identity(H.cols(), H.cols());
+    const Eigen::VectorXd b = refract::transposeTimesVector(H, left);
+    return std::max(0., left.squaredNorm() - b.dot(refract::LDLT(N).solve(b)));
+}
+
 void forget(Measurement& m, size_t i)
 {
     m.points[i] = Point3d(NOT_KNOWN, NOT_KNOWN, NOT_KNOWN);
@@ -161,6 +184,7 @@ void forget(Measurement& m, size_t i)
 ShownNoise::ShownNoise(const Calibration& calibration, const Measurement& m)
 {
     const ConsistencyResiduals residualOf(calibration, m, 0.);
+    std::vector<ConsistencyResidual> all;
     for (size_t i = 0; i < m.points.size(); i++)
     {
         const ConsistencyResidual residual = residualOf(i);
@@ -168,7 +192,23 @@ ShownNoise::ShownNoise(const Calibration& calibration, const Measurement& m)
             continue;
         parts_.push_back({residual.dof, std::pow(residual.pixels, 2), std::pow(residual.expected, 2)});
         dof_ += residual.dof;
+        all.push_back(residual);
     }
+    const int parameters = calibration.covariance.rows;
+    if (dof_ < 2*parameters || all.empty())
+        return;
+    MatrixXd H(dof_, parameters);
+    Eigen::VectorXd left(dof_);
+    Eigen::Index row = 0;
+    for (const ConsistencyResidual& residual : all)
+    {
+        left.segment(row, residual.dof) = residual.left;
+        if (parameters)
+            H.middleRows(row, residual.dof) = residual.byParameters.transpose();
+        row += residual.dof;
+    }
+    besideCalibration_ = parameters ? squaresBeside(H, left) : left.squaredNorm();
+    dofBesideCalibration_ = dof_ - parameters;
 }
 
 double ShownNoise::sigma() const
@@ -181,11 +221,16 @@ double ShownNoise::sigma() const
 
 bool ShownNoise::isMoreThan(double pixelSigma) const
 {
-    const double CERTAIN = 4.;              // standard deviations
     double sum = 0.;
     for (const Part& part : parts_)
         sum += part.dof*part.square/(pixelSigma*pixelSigma + USUAL*USUAL*part.ofCalibration);
     return dof_ && std::sqrt(sum/dof_) > rmsAt(CERTAIN, dof_);
+}
+
+bool ShownNoise::refutes(double pixelSigma) const
+{
+    return isMoreThan(pixelSigma) || (dofBesideCalibration_ && std::sqrt(besideCalibration_/dofBesideCalibration_)
+                                                                   > pixelSigma*rmsAt(CERTAIN, dofBesideCalibration_));
 }
 
 void checkConsistency(const Calibration& calibration, double pixelSigma, Measurement& m)

@@ -30,6 +30,8 @@ public:
     int dof() const { return dof_; }
     //! Beyond chance, even if the calibration errs by three standard deviations, which is one error for all points.
     bool isMoreThan(double pixelSigma) const;
+    //! The same whatever the calibration errs by: by what no error of its parameters makes of the rays. False where points are few.
+    bool refutes(double pixelSigma) const;
 
 private:
     struct Part
@@ -39,6 +41,8 @@ private:
     };
     std::vector<Part> parts_;
     int dof_ = 0;
+    double besideCalibration_ = 0.;                 //!< sum of squares, px^2
+    int dofBesideCalibration_ = 0;
 };
 
 } // namespace tools
