@@ -312,6 +312,7 @@ Certificate certificateOf(const Options& o, const Calibration& calibration, cons
 {
     Certificate c;
     c.label = label;
+    c.whereAll = !o.dcc.empty() ? "the DCC" : o.summary.empty() ? "" : fs::path(o.summary).filename().string();
     c.temperature = textOf(temperatureOf(o));
     c.command = command.line();
     c.calibrationTime = calibration.time;

@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <iostream>
 #include <map>
+#include <set>
 
 namespace {
 
@@ -209,6 +210,26 @@ TEST_CASE("Certificates of the same input have the same bytes, and text that mea
     writeFile(out / "wrong.csv", Bench::lengths(5.) + format("\"odd; \"\"name\"\"\",view00,0,view01,0,%g,0.1\n", 100.));
     CHECK(runTool(bench.accept(bench.folder / "points.csv", out / "wrong.csv", "0.1") + " --quiet --dcc=" + out / "e.xml").code == 2);
     CHECK(std::system((validate + out / "e.xml" + " 2>>" + out / "log").c_str()) == 0);
+}
+
+TEST_CASE("A certificate says where the lengths are that have no room on it, and shows a bar for each", "[tools][accept_tool]")
+{
+    const Bench& bench = Bench::get();
+    const TemporaryFolder out;
+    const std::string command = bench.accept(bench.folder / "points.csv", bench.folder / "lengths.csv", "2") + " --quiet --certificate="
+        + out / "c.html";
+    REQUIRE(runTool(command + " --dcc=" + out / "d.xml").code == 0);
+    CHECK(mentions(readFile(out / "c.html"), "the others are in the DCC."));
+    REQUIRE(runTool(command + " --summary=" + out / "s.json").code == 0);
+    CHECK(mentions(readFile(out / "c.html"), "the others are in s.json."));
+    REQUIRE(runTool(command).code == 0);
+    const std::string html = readFile(out / "c.html"), PLACE = "transform='translate(";
+    CHECK(mentions(html, "the others are in the picture only."));
+    std::set<std::string> places;           // across, of 18 errors of three lengths
+    const size_t end = html.find("</svg>");
+    for (size_t at = html.find(PLACE); at < end; at = html.find(PLACE, at + 1))
+        places.insert(html.substr(at + PLACE.size(), html.find(',', at) - at - PLACE.size()));
+    CHECK(places.size() >= 18);
 }
 
 TEST_CASE("refract_accept refuses images that calibrated, and tells when it cannot know", "[tools][accept_tool]")

@@ -26,15 +26,30 @@ const double NONE = std::numeric_limits<double>::quiet_NaN();
 const int WIDTH = 460, HEIGHT = 300;
 
 //! Errors with their U over the tested length, between the limits. SVG.
+//! Lengths that are alike stand side by side, as their bars would hide each other.
+double asideOf(const Acceptance& a, const LengthResult& of, double longest)
+{
+    const double ALIKE = 0.005*longest, STEP = 0.008*longest, ROOM = 0.08*longest;
+    int before = 0, count = 0;
+    for (const LengthResult& r : a.lengths)
+        if (std::abs(r.length.length - of.length.length) < ALIKE)
+        {
+            before += &r < &of;
+            count++;
+        }
+    return std::min(STEP, ROOM/count)*(before - 0.5*(count - 1));
+}
+
 std::string drawErrorsOverLength(const Acceptance& a)
 {
     Plot plot(WIDTH, HEIGHT);
     std::vector<std::vector<double>> errors, limits;
     double longest = 0., highest = 0.;
     for (const LengthResult& r : a.lengths)
-    {
-        errors.push_back({r.length.length, r.error, r.U()});
         longest = std::max(longest, r.length.length);
+    for (const LengthResult& r : a.lengths)
+    {
+        errors.push_back({r.length.length + asideOf(a, r, longest), r.error, r.U()});
         highest = std::max({highest, std::abs(r.error) + r.U(), r.limit});
     }
     for (int i = 0; i <= 20; i++)
@@ -284,8 +299,8 @@ std::string certificateHtml(const Certificate& c)
     page.set("lengths", lengthsOf(a));
     const bool partly = a.lengths.size() > LENGTHS_ON_PAGE;
     page.set("has_more_lengths", partly);
-    page.set("more_lengths", format("The %zu of %zu lengths that use most of their limit; the others are in the DCC.", LENGTHS_ON_PAGE,
-                                    a.lengths.size()));
+    page.set("more_lengths", format("The %zu of %zu lengths that use most of their limit; the others are ", LENGTHS_ON_PAGE,
+                                    a.lengths.size()) + (c.whereAll.empty() ? "in the picture only." : "in " + c.whereAll + "."));
     page.set("volume_name", a.volume.name());
     page.set("volume", a.volume.numbers());
     const int decimals = decimalsOf(a.largest().U());

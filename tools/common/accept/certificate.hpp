@@ -46,6 +46,7 @@ struct Certificate
     CertificateLabel label;
     std::vector<CertificateInput> inputs;
     std::string command, calibrationTime, calibrationVerdict;
+    std::string whereAll;                   //!< which of the outputs has all lengths; empty: none
     std::string temperature;                //!< of the standard, with its +-; empty: not stated
     std::vector<GumTable> budgets;          //!< of the decisive length, of a point, of a plane
     const Acceptance* acceptance = nullptr;
