@@ -116,7 +116,8 @@ std::vector<Minimum> windowMinima(const Camera& camera, const RigViews& views, i
             starts.push_back(start);
     for (const RigStart& start : coplanarTilts(given, views, flags))
         starts.push_back(start);
-    return hillClimb(multiStart(starts, stages, views, flags), [&](const Minimum& best) { return withBetterPoses(best, views); }, views, flags);
+    const auto neighbours = [&](const Minimum& best) { return withBetterPoses(best, views); };
+    return hillClimb(multiStart(starts, stages, views, flags), neighbours, views, flags);
 }
 
 namespace {
