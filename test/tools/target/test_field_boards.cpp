@@ -5,12 +5,14 @@
 #include "console/failure.hpp"
 #include "console/numbers.hpp"
 #include "target/april_grid.hpp"
+#include "target/dot_lattice.hpp"
 #include "target/missing_target.hpp"
 #include "target/target.hpp"
 #include "scenes.hpp"
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <catch2/catch.hpp>
+#include <filesystem>
 
 using namespace tools;
 using cv::Mat;
@@ -116,6 +118,15 @@ double worst(const std::vector<Point2d>& found, const Target& target, const Matx
     return least;
 }
 
+std::string explained(const Mat& image, const TargetOptions& options)
+{
+    const std::string path = (std::filesystem::temp_directory_path()/"refract_field_board.png").string();
+    cv::imwrite(path, image);
+    const std::string text = explainMissing({{path, Size()}}, "'" + path + "'", 1, Target(options), BRIGHTNESS);
+    std::filesystem::remove(path);
+    return text;
+}
+
 const int FINE_TAG = 200;           // pixels of a tag that is drawn
 const double SPACING = 0.3;
 
@@ -179,13 +190,57 @@ TEST_CASE("Larger dots that mark the middle of a plate are found as the others a
     }
 }
 
-TEST_CASE("A plate whose outer row is covered is not found, as which row that is nothing tells", "[target][circles]")
+TEST_CASE("A plate of dots of another size is called one", "[target][circles]")
+{
+    const Dots plate = {Size(9, 7), false, {31}, {}};
+    const Mat image = picture(boardToImage(50, 4, 2e-4, Point2d(4, 3)), [&](const Point2d& p) { return plate.isDark(p); });
+    for (const TargetOptions& options : {board("circles", "10x7"), board("chessboard", "10x7"), board("aprilgrid", "3x2")})
+    {
+        CHECK(Target(options).detect(image).empty());
+        const std::string text = explained(image, options);
+        INFO(text);
+        CHECK(text.find("look like a plate of 9x7 dots") != std::string::npos);
+    }
+}
+
+TEST_CASE("A plate whose outer row is covered is no smaller plate with a free choice of rows", "[target][circles]")
 {
     Dots plate = {Size(9, 7), false, {}, {}};
     for (int i = 0; i < 9; i++)
         plate.missing.push_back(i);
     const Mat image = picture(boardToImage(50, 4, 2e-4, Point2d(4, 3)), [&](const Point2d& p) { return plate.isDark(p); });
     CHECK(Target(board("circles", "9x7")).detect(image).empty());
+    CHECK(explained(image, board("circles", "9x7")).find("keep its outer rows") != std::string::npos);
+}
+
+TEST_CASE("A plate of the right size of which too little is seen is not called one of another size", "[target][circles][missing]")
+{
+    const Dots plates[] = {{Size(9, 7), false, {0, 1, 2, 3, 4}, {}}, {Size(4, 11), true, {0, 1, 2}, {}}};
+    for (const Dots& plate : plates)
+    {
+        const Matx33d H = boardToImage(plate.asymmetric ? 40 : 50, 4, 2e-4, Point2d(4, 0.5*plate.size.height));
+        const Mat image = picture(H, [&](const Point2d& p) { return plate.isDark(p); });
+        const TargetOptions options = board(plate.asymmetric ? "acircles" : "circles", sizeText(plate.size));
+        CHECK(Target(options).detect(image).empty());
+        const std::string text = explained(image, options);
+        INFO(text);
+        CHECK(text.find("too little is seen") != std::string::npos);
+        CHECK(text.find("--size") == std::string::npos);
+    }
+}
+
+TEST_CASE("The size of an asymmetric plate is told, however it is turned", "[target][circles][missing]")
+{
+    for (const Size& size : {Size(4, 11), Size(5, 9)})
+        for (double degrees : {4., 50., 94., 140., 184., 230., 274., 320.})
+        {
+            CAPTURE(size, degrees);
+            const Dots plate = {size, true, {}, {}};
+            const Matx33d H = boardToImage(40, degrees, 2e-4, Point2d(size.width, 0.5*size.height));
+            bool asymmetric = false;
+            CHECK(dotGridIn(picture(H, [&](const Point2d& p) { return plate.isDark(p); }), asymmetric) == size);
+            CHECK(asymmetric);
+        }
 }
 
 TEST_CASE("One dot that is much larger than the others leaves those far from it as precise", "[target][circles]")
@@ -288,6 +343,17 @@ TEST_CASE("One tag where it does not belong is left out, the others stay", "[tar
     CHECK(!seen(found[2*10 + 4]));
     CHECK(!seen(found[6*10]));
     CHECK(worstCorner(found, target, [&](const Point2d& p) { return through(H, p); }) < 0.2);
+}
+
+TEST_CASE("An AprilGrid in place of another board is called one, whatever its size", "[target][aprilgrid][missing]")
+{
+    const Mat image = aprilPicture(Size(6, 6), boardToImage(75, 5, 2e-4, Point2d(3.75, 3.75)));
+    for (const TargetOptions& options : {board("chessboard", "9x6"), board("circles", "6x6")})
+    {
+        const std::string text = explained(image, options);
+        INFO(text);
+        CHECK(text.find("--pattern=aprilgrid (whose --size counts tags)") != std::string::npos);
+    }
 }
 
 TEST_CASE("A tag is that of Kalibr's family: its bits, in its order", "[target][aprilgrid]")

@@ -238,6 +238,13 @@ Mat drawAprilGrid(Size tags, double spacing, int pixelsPerTag)
     return image;
 }
 
+bool showsAprilTags(const Mat& grey)
+{
+    Tags found;
+    addTags(grey, 1., found);
+    return found.size() >= LEAST;
+}
+
 std::vector<Point2d> detectAprilGrid(const Mat& grey, Size tags, double spacing)
 {
     const double REACH = 0.8*APRIL_BORDER;        // what is nearest to a corner inside of a tag are its bits

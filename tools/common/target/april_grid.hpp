@@ -26,6 +26,9 @@ cv::Mat aprilTagModules(int tag);
 //! The board seen from the front, with the dark squares at its edges, whose outer corner is that of the image; dark is 0.
 cv::Mat drawAprilGrid(cv::Size tags, double spacing, int pixelsPerTag);
 
+//! Whether there are two tags of such a board, or more.
+bool showsAprilTags(const cv::Mat& grey);
+
 /** Pixels of the corners of all tags, NaN where a tag was not seen; empty if less than two were. A tag that is not where those beside it
 say is none. Throws Failure if most of at least four tags are not where Kalibr puts them. */
 std::vector<cv::Point2d> detectAprilGrid(const cv::Mat& grey, cv::Size tags, double spacing);

@@ -124,6 +124,15 @@ DotLattice changed(DotLattice lattice, const Change& change)
     return normalised(lattice);
 }
 
+/** The columns and rows of an asymmetric grid. Its rows are shifted by one against each other, so that a whole one is an even number of
+places wide: where it is high by an even number, it lies on its side. */
+Size sizeOfAsymmetric(Size places)
+{
+    if (places.width % 2 == 1 && places.height % 2 == 0)
+        std::swap(places.width, places.height);
+    return Size((places.width + 1)/2, places.height);
+}
+
 } // namespace
 
 DotLattice findLattice(const std::vector<KeyPoint>& dots)
@@ -197,6 +206,35 @@ std::vector<int> dotsOfGrid(const DotLattice& lattice, const std::vector<Vec2d>&
             return dots;
     }
     return {};
+}
+
+Size dotGridIn(const cv::Mat& grey, bool& asymmetric)
+{
+    const size_t FEWEST = 12;
+    const double LEAST = 0.75;
+    cv::SimpleBlobDetector::Params limits;
+    limits.maxArea = std::max(limits.maxArea, (float)(grey.total()/FEWEST))/4;
+    limits.minArea /= 4;
+    limits.minDistBetweenBlobs /= 2;
+    limits.filterByCircularity = true;          // squares have 0.785
+    limits.minCircularity = 0.82f;
+    cv::Mat half;                               // a quarter of the time
+    cv::resize(grey, half, cv::Size(), 0.5, 0.5, cv::INTER_AREA);
+    for (const uchar colour : {0, 255})
+    {
+        limits.blobColor = colour;
+        std::vector<KeyPoint> blobs;
+        cv::SimpleBlobDetector::create(limits)->detect(half, blobs);
+        const DotLattice lattice = findLattice(blobs);
+        const DotLattice oblique = asAsymmetric(lattice);
+        asymmetric = 2*oblique.filled() > lattice.filled();
+        const Size straight(std::max(lattice.size.width, lattice.size.height), std::min(lattice.size.width, lattice.size.height));
+        const Size size = asymmetric ? sizeOfAsymmetric(oblique.size) : straight;
+        if (lattice.places.size() >= FEWEST && std::min(size.width, size.height) > 1
+            && (double)lattice.places.size() >= LEAST*size.area())
+            return size;
+    }
+    return Size();
 }
 
 } // namespace tools

@@ -17,6 +17,9 @@ struct DotLattice
     std::vector<cv::Point> places;
     std::vector<int> dots;          //!< of each place: which of the dots it is
     cv::Size size;                  //!< that the places take
+
+    //! How many of the places within its size have a dot.
+    double filled() const { return (double)places.size()/std::max(size.area(), 1); }
 };
 
 //! The lattice that most of the dots are on; a step is that between nearest neighbours, which is oblique on an asymmetric grid.
@@ -28,6 +31,9 @@ DotLattice asAsymmetric(const DotLattice& lattice);
 /** For each point of a grid the dot that is on it, -1 where none is. Empty: the lattice is not of this size, or less than three quarters of
 the dots are there, or less than half of those of an outer row or column, so that it might be a part of a larger one. */
 std::vector<int> dotsOfGrid(const DotLattice& lattice, const std::vector<cv::Vec2d>& grid);
+
+//! The grid of dots that an image shows, however many are missing; empty: none. @param asymmetric receives its kind
+cv::Size dotGridIn(const cv::Mat& grey, bool& asymmetric);
 
 } // namespace tools
 

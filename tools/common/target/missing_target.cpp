@@ -4,6 +4,8 @@
 #include "target/missing_target.hpp"
 #include "console/failure.hpp"
 #include "console/numbers.hpp"
+#include "target/april_grid.hpp"
+#include "target/dot_lattice.hpp"
 #include "target/partial_chessboard.hpp"
 
 #include <algorithm>
@@ -60,18 +62,19 @@ bool isFound(const Target& target, const std::vector<Without>& images, Channel c
     return std::count(found.begin(), found.end(), true) > 0;
 }
 
-//! With --partial, which a small board cannot have.
-std::optional<Target> partialOf(const Target& target)
+std::optional<Target> like(const Target& target, const std::string& pattern, const std::string& dictionary, bool partial)
 {
     TargetOptions options;
+    options.pattern = pattern;
     options.size = target.sizeText();
     options.square = target.square();
-    options.partial = true;
+    options.dictionary = dictionary;
+    options.partial = partial;
     try
     {
         return Target(options);
     }
-    catch (const Failure&)
+    catch (const Failure&)          // no such board can be: a dictionary with too few markers
     {
         return std::nullopt;
     }
@@ -80,7 +83,7 @@ std::optional<Target> partialOf(const Target& target)
 //! Half a board, or a hand before it: what to do.
 std::string partAdvice(const std::vector<Without>& images, const Target& target, Channel channel)
 {
-    const std::optional<Target> partial = partialOf(target);
+    const std::optional<Target> partial = like(target, "chessboard", TargetOptions().dictionary, true);
     return std::string("keep the whole board in view and uncovered")
            + (partial && isFound(*partial, images, channel)
               ? ", or, with one camera and a hand-held board, add --unpaired --partial, which finds a piece of it in these images"
@@ -102,6 +105,21 @@ std::string partText(const std::vector<Without>& images, const Target& target, C
            + " inner corners): " + partAdvice(images, target, channel);
 }
 
+//! A target with tags: a ChArUco board with the same number of points, or an AprilGrid; empty: none is found.
+std::string otherTags(const std::vector<Without>& images, const Target& target, Channel channel)
+{
+    const std::vector<Without> one(images.begin(), images.begin() + 1);
+    for (const char* dictionary : {"DICT_4X4_250", "DICT_5X5_1000", "DICT_6X6_1000", "DICT_7X7_1000", "DICT_ARUCO_ORIGINAL"})
+    {
+        const std::optional<Target> tried = like(target, "charuco", dictionary, false);
+        if (tried && isFound(*tried, one, channel))
+            return std::string("--pattern=charuco --dictionary=") + dictionary;
+    }
+    if (target.pattern() != Target::APRILGRID && showsAprilTags(readGrey(one[0].path, channel)))
+        return "--pattern=aprilgrid (whose --size counts tags)";
+    return "";
+}
+
 //! Where no chessboard is asked for, nobody has looked for one yet.
 cv::Size chessboardIn(const std::vector<Without>& images, Channel channel)
 {
@@ -109,6 +127,26 @@ cv::Size chessboardIn(const std::vector<Without>& images, Channel channel)
     for (Without& image : seen)
         image.chessboard = longerFirst(lookForChessboard(readGrey(image.path, channel)).size);
     return seen.size() > 1 ? usualSize(seen) : seen[0].chessboard;
+}
+
+//! A plate of dots of another size, or one of which a row is covered; empty: no image shows one.
+std::string otherDots(const std::vector<Without>& images, const Target& target, Channel channel)
+{
+    for (size_t i = 0; i < std::min(images.size(), TRIED); i++)
+    {
+        bool asymmetric = false;
+        const cv::Size size = dotGridIn(readGrey(images[i].path, channel), asymmetric);
+        const std::string pattern = asymmetric ? "acircles" : "circles";
+        const cv::Size asked = asymmetric ? target.size() : longerFirst(target.size());
+        if (!size.empty() && pattern == target.patternName() && size == asked)
+            return "of the plate in " + quotedNames({images[i]}) + " too little is seen: at least half of the dots of each outer row and "
+                   "column, and three quarters of all, must be in view and uncovered";
+        if (!size.empty())
+            return "the dots in " + quotedNames({images[i]}) + " look like a plate of " + sizeText(size)
+                   + " dots, not --pattern=" + target.patternName() + " --size=" + target.sizeText() + ": give --pattern=" + pattern
+                   + " --size=" + sizeText(size) + ", or, if it has more, keep its outer rows and columns in view";
+    }
+    return "";
 }
 
 } // namespace
@@ -162,6 +200,13 @@ std::string explainMissing(const std::vector<Without>& images, const std::string
     if (target.partial())
         return "no piece of the chessboard, of at least 5x5 inner corners, was found in " + looked + ": show more of it, check light and "
                "focus";
+    const std::string dots = otherDots(images, target, channel);
+    if (!dots.empty())
+        return dots;
+    const std::string other = otherTags(images, target, channel);
+    if (!other.empty())
+        return "the target in " + quotedNames({images[0]}) + " looks like one of another kind: give " + other + ", or check --size="
+               + target.sizeText();
     const cv::Size chessboard = isChessboard ? cv::Size() : chessboardIn(images, channel);
     if (!chessboard.empty())
         return "the target in " + quotedNames(first) + " looks like a chessboard of " + sizeText(chessboard)

@@ -24,8 +24,8 @@ std::vector<cv::Point2d> detectIn(const cv::Mat& grey, const std::string& path, 
 //! The size of the chessboard that all these images show in place of the one that was asked for; empty if they do not agree.
 cv::Size otherChessboard(const std::vector<Without>& images);
 
-/** One sentence that says why the target is not found and what to do: a chessboard of another size or in place of another target, a part of
-the board in view, or nothing at all.
+/** One sentence that says why the target is not found and what to do: a chessboard of another size, a part of the board in view, a target
+of another kind, or nothing at all.
 @param where the glob, in quotes
 @param images that were looked at; all: how many there are */
 std::string explainMissing(const std::vector<Without>& images, const std::string& where, size_t all, const Target& target, Channel channel);
