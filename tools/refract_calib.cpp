@@ -70,6 +70,7 @@ The same input gives the same bytes: outputs carry the time of the newest image 
 #include "console/progress.hpp"
 #include "console/sha256.hpp"
 #include "console/table.hpp"
+#include "diagnose/diagnosis.hpp"
 #include "formats/point_table.hpp"
 #include "report/digest.hpp"
 #include "report/plot.hpp"
@@ -270,6 +271,7 @@ RigCalibration calibrate(const Options& o, bool quiet)
     if (!liquid.empty())
         c.notices.push_back(liquid);
     noticeSharedLens(o, c.notices);
+    requireOneMoment({c.data, c.options, c.square, c.notices});
     if (o.lens == "auto")
         c.lens = chooseLens(c.data, c.options, o.robust);
     if (!c.lens.scores.empty())

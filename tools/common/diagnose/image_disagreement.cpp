@@ -101,6 +101,25 @@ bool solveBoard(const View& view, const std::vector<Point2d>& pixels, const Matx
     return true;
 }
 
+//! Both poses of a flat board.
+std::vector<RigidTransform> posesOfBoard(const View& view, const std::vector<Point2d>& pixels, const Matx33d& K)
+{
+    std::vector<Point3d> object;
+    std::vector<Point2d> image;
+    for (size_t i = 0; i < pixels.size(); i++)
+        if (seen(pixels[i]))
+        {
+            object.push_back(view.objectPoints[i]);
+            image.push_back(pixels[i]);
+        }
+    std::vector<Mat> rvecs, tvecs;
+    solvePnPGeneric(object, image, K, noArray(), rvecs, tvecs, false, SOLVEPNP_IPPE);
+    std::vector<RigidTransform> poses;
+    for (size_t i = 0; i < rvecs.size(); i++)
+        poses.push_back(transformOf(Vec3d(rvecs[i].ptr<double>()), Vec3d(tvecs[i].ptr<double>())));
+    return poses;
+}
+
 template<typename T> void addBytes(const T* from, size_t count, std::string& to)
 {
     to.append(reinterpret_cast<const char*>(from), count*sizeof(T));
@@ -164,8 +183,23 @@ std::vector<std::vector<PointInBoth>> pointsOf(const std::vector<Both>& boards)
     return points;
 }
 
-//! How far boards are from where the place of two cameras to each other has them, which one of some boards gives; px, of the middling one.
-double apart(const std::vector<Both>& boards, const std::vector<Both>& places, double focal)
+//! How far boards are from where a place of two cameras to each other has them, each; px.
+std::vector<double> distancesFrom(const RigidTransform& place, const std::vector<std::vector<PointInBoth>>& boards, double focal)
+{
+    std::vector<double> errors;
+    for (const std::vector<PointInBoth>& board : boards)
+    {
+        double sum = 0.;
+        for (const PointInBoth& X : board)
+            sum += norm(place*X.one - X.other)/std::abs(X.other[2]);
+        errors.push_back(focal*sum/board.size());
+    }
+    return errors;
+}
+
+/** The place of two cameras to each other, which one of some boards gives, that has the middling board nearest to it.
+@return how far that is, px; 0: too few boards */
+double apart(const std::vector<Both>& boards, const std::vector<Both>& places, double focal, RigidTransform* best = nullptr)
 {
     if (boards.size() < 3 || places.size() < 3)
         return 0.;
@@ -174,15 +208,10 @@ double apart(const std::vector<Both>& boards, const std::vector<Both>& places, d
     for (const Both& from : places)
     {
         const RigidTransform place = fromTo(from.one, from.other);
-        std::vector<double> errors;
-        for (const std::vector<PointInBoth>& board : points)
-        {
-            double sum = 0.;
-            for (const PointInBoth& X : board)
-                sum += norm(place*X.one - X.other)/std::abs(X.other[2]);
-            errors.push_back(focal*sum/board.size());
-        }
-        least = std::min(least, median(errors));
+        const double middling = median(distancesFrom(place, points, focal));
+        if (middling < least && best)
+            *best = place;
+        least = std::min(least, middling);
     }
     return least;
 }
@@ -252,6 +281,33 @@ void update(const RigData& data, const RigOptions& options, const RoughLenses& l
         all.glass[c - 1] = apart(glass, glass, through(c)(0, 0));
         all.states[c - 1] = apart(glass, direct, through(c)(0, 0));
     }
+}
+
+std::vector<int> viewsElsewhere(const RigData& data, const RigOptions& options, int camera)
+{
+    // A lens from images through a window is rough: of right images boards are off by up to 90 px, and by four times the middling one.
+    const double MOST = 2.*MOMENTS_PX, TIMES = 5., ROUGHEST = 3.*WINDOWS_PX;
+    const RoughLenses lenses = roughLensesOf(data);
+    const Matx33d K1 = throughWindow(lenses.direct[0], lenses.glass[0], options),
+                  K2 = throughWindow(lenses.direct[camera], lenses.glass[camera], options);
+    BoardPoses poses;
+    const std::vector<Both> boards = boardsOf(data, camera, true, K1, K2, poses);
+    RigidTransform place;
+    const double middling = apart(boards, boards, K2(0, 0), &place), most = std::max(MOST, TIMES*middling);
+    std::vector<int> elsewhere;
+    if (!(middling > 0. && middling < ROUGHEST))
+        return elsewhere;
+    for (const Both& board : boards)
+    {
+        std::vector<Both> all;
+        for (const RigidTransform& one : posesOfBoard(*board.view, board.view->glass[0], K1))
+            for (const RigidTransform& other : posesOfBoard(*board.view, board.view->glass[camera], K2))
+                all.push_back({one, other, board.view});
+        const std::vector<double> off = distancesFrom(place, pointsOf(all), K2(0, 0));
+        if (!off.empty() && *std::min_element(off.begin(), off.end()) > most)
+            elsewhere.push_back(int(board.view - data.views.data()));
+    }
+    return elsewhere;
 }
 
 Disagreements disagreementsOf(const RigData& data, const RigOptions& options, const RoughLenses& lenses, BoardPoses& poses)

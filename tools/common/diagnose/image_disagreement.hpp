@@ -60,6 +60,10 @@ Disagreements disagreementsOf(const RigData& data, const RigOptions& options, co
 void update(const RigData& data, const RigOptions& options, const RoughLenses& lenses, const std::vector<int>& cameras, BoardPoses& poses,
             Disagreements& all);
 
+/** Views in which the board is clearly elsewhere in a camera than where most images through the windows have this camera to the first,
+whichever of the two poses of a flat board each image shows; empty where most do not agree. */
+std::vector<int> viewsElsewhere(const RigData& data, const RigOptions& options, int camera);
+
 std::vector<int> allCameras(const RigData& data);
 
 //! Disagreements::camerasApart of these images.
