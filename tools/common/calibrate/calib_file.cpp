@@ -128,8 +128,8 @@ FileNode cameraNode(const FileStorage& fs, size_t camera)
     return root[cameraName(0)].empty() ? root : root[cameraName(camera)];
 }
 
-//! Of one camera, and of the file.
-void requireKnownKeys(const FileStorage& fs, size_t cameras, const std::string& filename)
+//! Of each camera, and of the file.
+void requireKnownKeys(const FileStorage& fs, const std::string& filename)
 {
     const std::vector<std::string> ofCamera = {"image_width", "image_height", "camera_matrix", "distortion_coefficients", "lens_model",
                                                "glass_window", "glass_window_std"};
@@ -137,10 +137,23 @@ void requireKnownKeys(const FileStorage& fs, size_t cameras, const std::string& 
                                       "placement_std", "channel", "verdict", "contradictions", "weak_points", "window_serial",
                                       "calibration_time"};
     known.insert(known.end(), ofCamera.begin(), ofCamera.end());
-    if (fs.isOpened())
-        requireNoMisspelling(fs.root(), known, filename);
-    for (size_t c = 0; c < cameras; c++)
-        requireNoMisspelling(cameraNode(fs, c), ofCamera, filename);
+    if (!fs.isOpened())
+        return;
+    requireNoMisspelling(fs.root(), known, filename);
+    for (size_t c = 0; !fs[cameraName(c)].empty(); c++)
+        requireNoMisspelling(fs[cameraName(c)], ofCamera, filename);
+}
+
+//! The same of a file that cannot be read, whatever the reason.
+void explainByKeys(const std::string& filename)
+{
+    try
+    {
+        requireKnownKeys(FileStorage(filename, FileStorage::READ), filename);
+    }
+    catch (const cv::Exception&)        // no such file
+    {
+    }
 }
 
 //! What the module reads of a file.
@@ -195,6 +208,7 @@ Rig readRig(const std::string& filename)
     }
     catch (const cv::Exception& e)
     {
+        explainByKeys(filename);
         throw Failure(e.err + ". If it is what refract_calib wrote, was it edited or cut short? Calibrate again. (Of other programs it is "
                       "no file of cameras that is known here: doc/formats.md)");
     }
@@ -267,7 +281,7 @@ Calibration readCalibration(const std::string& filename)
     // Of a .cameramodel and of other programs' files, nothing else is known.
     const bool isOwn = !isCameraModel(filename) && !rig.isForeign;
     const FileStorage fs = isOwn ? FileStorage(filename, FileStorage::READ) : FileStorage();
-    requireKnownKeys(fs, rig.cameras.size(), filename);
+    requireKnownKeys(fs, filename);
     for (size_t c = 0; c < rig.cameras.size(); c++)
     {
         calibration.add(readCamera(cameraNode(fs, c), filename, rig.cameras[c]), {rig.Rs[c], rig.Ts[c]});
