@@ -70,7 +70,7 @@ The same input gives the same bytes: outputs carry the time of the newest image 
 #include "console/progress.hpp"
 #include "console/sha256.hpp"
 #include "console/table.hpp"
-#include "diagnose/diagnosis.hpp"
+#include "diagnose/image_mixups.hpp"
 #include "formats/point_table.hpp"
 #include "report/digest.hpp"
 #include "report/plot.hpp"

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // Images of two cameras that are not of one moment, told without a fit.
-#include "diagnose/diagnosis.hpp"
+#include "diagnose/image_mixups.hpp"
 #include "diagnose/mistake_scenes.hpp"
 #include <algorithm>
 

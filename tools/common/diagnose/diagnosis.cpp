@@ -353,31 +353,6 @@ bool requireNoMixUp(const CalibrationInput& input, const MixUps& mixUps, std::op
     return true;
 }
 
-void requireOneMoment(const CalibrationInput& input)
-{
-    const size_t LEAST = 3;             // others for each that is elsewhere
-    const RigData& data = input.data;
-    if (std::any_of(data.views.begin(), data.views.end(), [](const View& view) { return view.countDirect() > 0; }))
-        return;
-    for (int c = 1; c < data.cameraCount; c++)
-    {
-        const std::vector<int> elsewhere = viewsElsewhere(data, input.options, c);
-        if (elsewhere.empty() || LEAST*elsewhere.size() > data.views.size())
-            continue;
-        std::vector<std::string> names;
-        for (int view : elsewhere)
-            names.push_back(data.views[view].stem);
-        const std::string images = "--glass" + cameraSuffix(c) + " " + listed(names);
-        RigData exchanged = data;
-        if (elsewhere.size() == 2)
-            std::swap(exchanged.views[elsewhere[0]].glass[c], exchanged.views[elsewhere[1]].glass[c]);
-        if (elsewhere.size() == 2 && viewsElsewhere(exchanged, input.options, c).empty())
-            throw Failure(images + " are exchanged, or those of camera 1: only so the board is where the other images have it");
-        throw Failure(format("in %s the board is elsewhere than the other images have camera %d to camera 1: it moved between the two, or "
-                             "one is of another name, turned or mirrored; leave it out, or put it right", images.c_str(), c + 1));
-    }
-}
-
 bool isSuspicious(const CalibrationInput& input, PlainFit& plain)
 {
     if (!(plain.px < largestSoundError(input.data)))

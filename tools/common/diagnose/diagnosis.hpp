@@ -31,10 +31,6 @@ looked at before any that is not short.
 @return whether it has looked for all of them */
 bool requireNoMixUp(const CalibrationInput& input, const MixUps& mixUps, std::optional<RigModel>& only);
 
-/** Throws Failure if of two cameras that only images through their windows calibrate some are not of one moment, or exchanged. Their
-lenses are searched for half a minute, and with such images for longer. */
-void requireOneMoment(const CalibrationInput& input);
-
 /** Whether a fit to all images leaves far more than the lens's own images do, or than one with another medium behind the windows: a
 mistake may explain it, be it below a pixel.
 @param plain gets what another medium does */

@@ -81,18 +81,23 @@ Matx33d throughWindow(const Matx33d& direct, const Matx33d& glass, const RigOpti
     return Matx33d(longer*direct(0, 0), 0, direct(0, 2), 0, longer*direct(1, 1), direct(1, 2), 0, 0, 1);
 }
 
-bool solveBoard(const View& view, const std::vector<Point2d>& pixels, const Matx33d& K, RigidTransform& pose)
+void seenPoints(const View& view, const std::vector<Point2d>& pixels, std::vector<Point3d>& object, std::vector<Point2d>& image)
 {
-    if (isSolid(view.objectPoints))
-        return false;
-    std::vector<Point3d> object;
-    std::vector<Point2d> image;
     for (size_t i = 0; i < pixels.size(); i++)
         if (seen(pixels[i]))
         {
             object.push_back(view.objectPoints[i]);
             image.push_back(pixels[i]);
         }
+}
+
+bool solveBoard(const View& view, const std::vector<Point2d>& pixels, const Matx33d& K, RigidTransform& pose)
+{
+    if (isSolid(view.objectPoints))
+        return false;
+    std::vector<Point3d> object;
+    std::vector<Point2d> image;
+    seenPoints(view, pixels, object, image);
     Vec3d rvec, tvec;
     if (image.size() < 6 || !solvePnP(object, image, K, noArray(), rvec, tvec, false, SOLVEPNP_IPPE))
         return false;
@@ -106,12 +111,7 @@ std::vector<RigidTransform> posesOfBoard(const View& view, const std::vector<Poi
 {
     std::vector<Point3d> object;
     std::vector<Point2d> image;
-    for (size_t i = 0; i < pixels.size(); i++)
-        if (seen(pixels[i]))
-        {
-            object.push_back(view.objectPoints[i]);
-            image.push_back(pixels[i]);
-        }
+    seenPoints(view, pixels, object, image);
     std::vector<Mat> rvecs, tvecs;
     solvePnPGeneric(object, image, K, noArray(), rvecs, tvecs, false, SOLVEPNP_IPPE);
     std::vector<RigidTransform> poses;

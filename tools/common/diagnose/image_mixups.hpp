@@ -37,6 +37,10 @@ struct MixUps
 
 MixUps findMixUps(const CalibrationInput& input);
 
+/** Throws Failure if of two cameras that only images through their windows calibrate some are not of one moment, or exchanged. Their
+lenses are searched for half a minute, and with such images for longer. */
+void requireOneMoment(const CalibrationInput& input);
+
 } // namespace tools
 
 #endif // REFRACT_TOOLS_IMAGE_MIXUPS_HPP
