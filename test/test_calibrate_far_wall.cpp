@@ -209,7 +209,9 @@ TEST_CASE("Far walls before long lenses: how many are right, and the errors over
     const int TRIALS = trials(10);
     std::cout << "[numbers] far walls: right of " << TRIALS << ", refused, RMS error over stated of normal and distance (seed " << seed()
               << ")\n";
-    for (const Tank& tank : { Tank{ 8571.43, 550, true }, Tank{ 8571.43, 550, false }, Tank{ 3500, 200, true }, Tank{ 3500, 200, false } })
+    const double STEEPEST = 0.87;       // 50 degrees
+    for (const Tank& tank : { Tank{ 8571.43, 550, true }, Tank{ 8571.43, 550, false }, Tank{ 3500, 200, true }, Tank{ 3500, 200, false },
+                              Tank{ 2500, 250, true, 0.52, STEEPEST }, Tank{ 5000, 330, true, 0.3, STEEPEST } })
     {
         int right = 0, refused = 0;
         Vec2d squares;
@@ -234,8 +236,8 @@ TEST_CASE("Far walls before long lenses: how many are right, and the errors over
         }
         const int told = std::max(TRIALS - refused, 1);
         std::cout << "  f " << tank.focal << " px, wall at " << tank.distance << " mm, " << (tank.boards ? "eight boards" : "one plate   ")
-                  << ": " << right << ", " << refused << ", " << std::sqrt(squares[0]/(2*told)) << ", " << std::sqrt(squares[1]/told)
-                  << std::endl;
+                  << (tank.leastTilt > 0 ? ", steep" : "") << ": " << right << ", " << refused << ", "
+                  << std::sqrt(squares[0]/(2*told)) << ", " << std::sqrt(squares[1]/told) << std::endl;
         CHECK(right == TRIALS);
     }
 }

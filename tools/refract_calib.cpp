@@ -263,9 +263,6 @@ RigCalibration calibrate(const Options& o, bool quiet)
     if (o.target.given())
         target = std::make_unique<Target>(o.target);
     RigCalibration c = prepare(o, target.get());
-    for (int k = 0; k < o.images.sources.cameraCount(); k++)
-        if (!c.options.known[k] && o.images.sources.direct[k].empty() && !(c.options.flags & cv::refract::GLASS_FREE_INTRINSICS))
-            refuseWithoutLens(k);       // before all images are searched
     o.images.read(target.get(), o.given.window.isDistanceSaid(), quiet, c);
     const std::string liquid = o.given.noticeOfLiquid(c.options.window);
     if (!liquid.empty())

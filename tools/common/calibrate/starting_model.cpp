@@ -18,13 +18,6 @@ using namespace cv::refract;
 
 namespace tools {
 
-void refuseWithoutLens(int camera)
-{
-    const std::string suffix = cameraSuffix(camera);
-    throw Failure("there are no images for the lens: give --direct" + suffix + " images or --camera" + suffix
-                  + ", or --free=intrinsics to find the lens through the window");
-}
-
 namespace {
 
 //! Of the views that have one.
@@ -47,7 +40,8 @@ Ptr<RefractiveCamera> startLens(const RigData& data, const RigOptions& options, 
     if (views.empty())
     {
         if (!(options.flags & GLASS_FREE_INTRINSICS))
-            refuseWithoutLens(camera);
+            throw Failure("there are no images for the lens: give --direct" + suffix + " images or --camera" + suffix
+                          + ", or --free=intrinsics to find the lens through the window");
         views = viewsOf(data, camera, true);    // a pinhole through the glass is a good start
         source.kind = LensSource::FROM_GLASS;
     }

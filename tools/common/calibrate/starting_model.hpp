@@ -46,9 +46,6 @@ struct LensSource
     double rms = 0.;            //!< cv::calibrateCamera's
 };
 
-//! Throws Failure: neither images without the window nor a file tell this lens, and it is not free.
-[[noreturn]] void refuseWithoutLens(int camera);
-
 //! A window's distance to start from, where nothing is known of it; away from its bound, 0. @param square of a board; 0: there is none
 double startDistance(const RigData& data, double square);
 

@@ -289,41 +289,62 @@ static std::vector<Pose> startsOf(const Camera& camera, const ImagePoints& point
     return poses;
 }
 
+//! False where a descent has ended as some point would lose its image: a step of Gauss-Newton would still lead on.
+static bool isMinimum(const Camera& camera, const ImagePoints& points, const Pose& pose)
+{
+    const double NOTHING = 1e-3, ROUNDING = 1e-9;       // part of the squares; square pixels of a point
+    SumOfSquares<6> here;
+    Vec6d step;
+    const Vec6d six(pose.rvec[0], pose.rvec[1], pose.rvec[2], pose.tvec[0], pose.tvec[1], pose.tvec[2]);
+    return PoseErrors{ camera, points }(six, here) && dampedStep(here, Vec6d(), 0, step) &&
+           expectedGain(here, step) < NOTHING*here.value + ROUNDING*(double)points.pixel.size();
+}
+
 /** Maximum likelihood from a start that may be within the window, as a closed form's may of a target that is close to it: that is moved
-away from the camera until all points have an image. */
-static PoseMinimum refineShown(const Camera& camera, const ImagePoints& points, const Pose& start)
+away from the camera until all points have an image.
+@param isPlace gets whether the end is a place to start other fits from only, as points would leave the images beyond it */
+static PoseMinimum refineShown(const Camera& camera, const ImagePoints& points, const Pose& start, bool& isPlace)
 {
     PoseMinimum minimum = { start, NaN };
+    isPlace = false;
     for (double farther : { 1., 1.03, 1.1, 1.25 })
     {
         minimum.pose = start;
         minimum.pose.tvec *= farther;
         minimum.rms = refinePose(camera, points, minimum.pose);
+        isPlace = farther > 1 && !isMinimum(camera, points, minimum.pose);
         if (!std::isnan(minimum.rms))
             break;
     }
     return minimum;
 }
 
-std::vector<PoseMinimum> findMinima(const Camera& camera, const ImagePoints& points, const Pose& start)
+//! @param placesToo also those that are no minima, see refineShown
+static std::vector<PoseMinimum> descend(const Camera& camera, const ImagePoints& points, const Pose& start, bool placesToo)
 {
     std::vector<PoseMinimum> minima;
     if (points.rows() < 6 || scatterRank(points.object) < 2)
         return minima;
     for (const Pose& pose : start.found ? std::vector<Pose>(1, start) : startsOf(camera, points))
     {
-        PoseMinimum minimum = refineShown(camera, points, pose);
-        if (!std::isnan(minimum.rms) && isNew(minima, minimum))
+        bool isPlace;
+        const PoseMinimum minimum = refineShown(camera, points, pose, isPlace);
+        if (!std::isnan(minimum.rms) && (placesToo || !isPlace) && isNew(minima, minimum))
             minima.push_back(minimum);
     }
     sortByError(minima);
     return minima;
 }
 
+std::vector<PoseMinimum> findMinima(const Camera& camera, const ImagePoints& points, const Pose& start)
+{
+    return descend(camera, points, start, false);
+}
+
 Pose solvePose(const Camera& camera, const std::vector<Point3d>& objectPoints, const std::vector<Point2d>& imagePoints,
                const Pose& start, double& rms)
 {
-    const std::vector<PoseMinimum> minima = findMinima(camera, observed(objectPoints, imagePoints), start);
+    const std::vector<PoseMinimum> minima = descend(camera, observed(objectPoints, imagePoints), start, true);
     rms = minima.empty() ? NaN : minima[0].rms;
     return minima.empty() ? Pose() : minima[0].pose;
 }

@@ -30,7 +30,8 @@ double meanRange(const std::vector<Pose>& poses);
 Pose inCamera1(const Pose& inCamera, const Pose& extrinsics);
 
 /** Pose of a target seen through lens and window: closed-form start on the bearings (solvePnP on the pinhole directions),
-then maximum likelihood. NaN image points are left out; halves have a say in the second, not in the start.
+then maximum likelihood. NaN image points are left out; halves have a say in the second, not in the start. To start other fits from:
+a target that would be before the window is put just behind it (findMinima has no such poses).
 @param start if found, the start
 @param rms reprojection error in pixels by cv::calibrateCamera's definition */
 Pose solvePose(const Camera& camera, const std::vector<Point3d>& objectPoints, const std::vector<Point2d>& imagePoints,
