@@ -11,6 +11,7 @@ squares: two angles are left to search. */
 
 #include "start/coplanarity.hpp"
 #include "math/dense.hpp"
+#include "math/rotation.hpp"
 
 namespace cv { namespace refract {
 
@@ -84,18 +85,9 @@ bool findMoments(const Camera& camera, const std::vector<Point3d>& object, const
     return true;
 }
 
-//! Two directions across the normal, and across each other.
-void directionsAcross(const Vec3d& normal, Vec3d& first, Vec3d& second)
-{
-    const Vec3d aside = std::abs(normal[0]) < 0.7 ? Vec3d(1, 0, 0) : Vec3d(0, 1, 0);
-    first = normalize(aside.cross(normal));
-    second = normal.cross(first);
-}
-
 double squaresAt(const Vec3d& normal, const std::vector<ViewMoments>& views)
 {
-    Vec3d across[2];
-    directionsAcross(normal, across[0], across[1]);
+    const Matx33d across = turnToZ(normal);     // its first two rows
     double sum = 0;
     for (const ViewMoments& view : views)
     {
@@ -103,7 +95,7 @@ double squaresAt(const Vec3d& normal, const std::vector<ViewMoments>& views)
         Eigen::MatrixXd B = Eigen::MatrixXd::Zero(3*n, 2*n);
         for (int c = 0; c < 3; c++)
             for (int i = 0; i < 2; i++)
-                B.block(c*n, i*n, n, n).diagonal().setConstant(across[i][c]);
+                B.block(c*n, i*n, n, n).diagonal().setConstant(across(i, c));
         sum += std::max(SymmetricEigen(propagated(view.sum, B.transpose())).values[0], 0.);
     }
     return sum;
@@ -121,13 +113,12 @@ Candidate descend(Candidate at, double step, double smallest, const std::vector<
 {
     while (step > smallest)
     {
-        Vec3d across[2];
-        directionsAcross(at.normal, across[0], across[1]);
+        const Matx33d back = turnToZ(at.normal).t();
         Candidate best = at;
         for (int x = -1; x <= 1; x++)
             for (int y = -1; y <= 1; y++)
             {
-                const Vec3d tried = normalize(at.normal + step*(x*across[0] + y*across[1]));
+                const Vec3d tried = normalize(back*Vec3d(step*x, step*y, 1));
                 if ((x || y) && tried[2] > 0)
                     best = std::min(best, Candidate{ squaresAt(tried, views), tried });
             }
