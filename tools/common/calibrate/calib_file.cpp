@@ -4,6 +4,7 @@
 #include "calibrate/calib_file.hpp"
 #include "calibrate/rig_data.hpp"
 #include "calibrate/window_face.hpp"
+#include "camera/storage.hpp"
 #include "console/cli.hpp"
 #include "console/file_output.hpp"
 #include "console/keys.hpp"
@@ -149,7 +150,7 @@ void explainByKeys(const std::string& filename)
 {
     try
     {
-        requireKnownKeys(FileStorage(filename, FileStorage::READ), filename);
+        requireKnownKeys(cv::refract::openStorage(filename), filename);
     }
     catch (const cv::Exception&)        // no such file
     {
@@ -238,7 +239,7 @@ bool isOfRig(const std::string& filename)
     if (isCameraModel(filename))
         return false;
     const Rig foreign = readForeign(filename);
-    return foreign.isForeign ? foreign.cameras.size() > 1 : !FileStorage(filename, FileStorage::READ)[cameraName(0)].empty();
+    return foreign.isForeign ? foreign.cameras.size() > 1 : !cv::refract::openStorage(filename)[cameraName(0)].empty();
 }
 
 KnownLens readLens(const std::string& filename, const std::string& name)
@@ -254,7 +255,7 @@ KnownLens readLens(const std::string& filename, const std::string& name)
     KnownLens lens{RefractiveCamera::read(filename, name), cv::Mat()};
     if (isCameraModel(filename))
         return lens;
-    const FileStorage fs(filename, FileStorage::READ);
+    const FileStorage fs = cv::refract::openStorage(filename);
     requireDistortion(cameraNode(fs, which), filename);
     if (fs["covariance"].empty())
         return lens;
@@ -280,7 +281,7 @@ Calibration readCalibration(const std::string& filename)
     calibration.covariance = rig.covariance;
     // Of a .cameramodel and of other programs' files, nothing else is known.
     const bool isOwn = !isCameraModel(filename) && !rig.isForeign;
-    const FileStorage fs = isOwn ? FileStorage(filename, FileStorage::READ) : FileStorage();
+    const FileStorage fs = isOwn ? cv::refract::openStorage(filename) : FileStorage();
     requireKnownKeys(fs, filename);
     for (size_t c = 0; c < rig.cameras.size(); c++)
     {

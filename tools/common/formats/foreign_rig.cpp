@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "formats/foreign_rig.hpp"
+#include "camera/storage.hpp"
 #include "console/images.hpp"
 #include "console/numbers.hpp"
 #include "console/table.hpp"
@@ -44,8 +45,7 @@ Json readXml(const ForeignFile& file)
 {
     try
     {
-        const cv::FileStorage fs(file.name, cv::FileStorage::READ);
-        return treeOf(fs.root(), 0);
+        return treeOf(cv::refract::openStorage(file.name).root(), 0);
     }
     catch (const cv::Exception& e)
     {

@@ -5,6 +5,7 @@
 #include "calibrate/parameter_columns.hpp"
 #include "calibrate/rigid_transform.hpp"
 #include "calibrate/window_face.hpp"
+#include "camera/storage.hpp"
 #include "console/failure.hpp"
 #include "math/dense.hpp"
 #include <opencv2/core/persistence.hpp>
@@ -85,7 +86,7 @@ EmitterPrior::EmitterPrior(const std::string& filename) : filename_(filename)
     FileStorage fs;
     try
     {
-        fs.open(filename, FileStorage::READ);
+        fs = cv::refract::openStorage(filename);
     }
     catch (const cv::Exception&) {}
     if (!fs.isOpened() || !fs.root().isMap())

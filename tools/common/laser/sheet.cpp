@@ -4,6 +4,7 @@
 #include "laser/sheet.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "calibrate/rigid_transform.hpp"
+#include "camera/storage.hpp"
 #include "console/failure.hpp"
 #include "console/file_output.hpp"
 #include "math/dense.hpp"
@@ -155,11 +156,12 @@ Sheet readSheet(const std::string& filename, const Calibration& calibration)
     FileStorage fs;
     try
     {
-        fs.open(filename, FileStorage::READ);
+        fs = cv::refract::openStorage(filename);
     }
-    catch (const cv::Exception&) {}
-    if (!fs.isOpened())
-        throw Failure("cannot read '" + filename + "': it must be what refract_laser --sheet-out wrote");
+    catch (const cv::Exception& e)
+    {
+        throw Failure("cannot read '" + filename + "' (" + e.err + "): it must be what refract_laser --sheet-out wrote");
+    }
     Sheet sheet;
     std::vector<double> camera;
     std::vector<double> plane, depth;

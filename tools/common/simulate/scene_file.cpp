@@ -3,6 +3,7 @@
 
 #include "simulate/scene_file.hpp"
 #include "calibrate/rig_model.hpp"
+#include "camera/storage.hpp"
 #include "console/failure.hpp"
 #include "console/keys.hpp"
 #include "simulate/surfaces_file.hpp"
@@ -261,7 +262,7 @@ Scene readScene(const std::string& filename)
     for (const CameraCalibration& c : scene.cameras.cameras)
         if (c.camera->imageSize().empty())
             throw Failure("'" + filename + "': image_width and image_height of each camera are needed");
-    const FileStorage fs(filename, FileStorage::READ);
+    const FileStorage fs = cv::refract::openStorage(filename);
     const size_t SHORTEST = 4;
     requireNoMisspelling(fs.root(), {"target", "exposure", "channels", "emitters", "texture", "seed", "poses", "sets", "scene"}, filename,
                          SHORTEST);
