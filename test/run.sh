@@ -17,17 +17,6 @@ set -eu
 cd "$(dirname "$0")/.."
 usage() { sed -n 's/^# \(Usage: \)/\1/p' "$0" >&2; exit 1; }
 . test/slices.sh
-scope=${1:-quick}
-case $scope in
-  quick) kinds="test" ;;
-  --all | --release) kinds="test lint in-tree fuzz" ;;
-  --slices) list_slices; exit 0 ;;
-  --slice) [ -n "$(of_slice "${2:-}" 1)" ] || usage
-           [ "${3:---record}" = --record ] || usage
-           slice_in_time "$2" "${3:-}"; exit ;;
-  --untimed) kinds=$(of_slice "$2" 3 | tr , ' ') ;;         # what --slice starts
-  *) usage ;;
-esac
 begun=$(date +%s)
 elapsed() { echo $(($(date +%s) - begun)); }
 after() { echo "$(elapsed) s"; }                    # since the beginning: what takes long shows
@@ -39,6 +28,17 @@ in_the_hour() {         # in_the_hour COMMAND...: skipped where the hour ends be
   case $code in 124 | 137) [ "$(left)" -gt 1 ] || code=77 ;; esac       # 137: what did not end by itself
   return $code
 }
+scope=${1:-quick}
+case $scope in
+  quick) kinds="test" ;;
+  --all | --release) kinds="test lint in-tree fuzz" ;;
+  --slices) list_slices; exit 0 ;;
+  --slice) [ -n "$(of_slice "${2:-}" 1)" ] || usage
+           [ "${3:---record}" = --record ] || usage
+           slice_in_time "$2" "${3:-}"; exit ;;
+  --untimed) kinds=$(of_slice "$2" 3 | tr , ' ') ;;         # what --slice starts
+  *) usage ;;
+esac
 for kind in $kinds; do      # all at once, as what runs side by side must not wait for the other's apt
   tools/install_dependencies.sh "$kind"
 done
