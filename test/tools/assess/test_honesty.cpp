@@ -335,6 +335,7 @@ struct Ratio
     double errors = 0., stated = 0.;
     int count = 0;
     std::vector<double> each;
+    std::vector<Point2d> upTo;              // errors and stated, up to the end of each trial
     void add(double error, double deviation)
     {
         if (!(deviation > 0.))
@@ -345,6 +346,19 @@ struct Ratio
         count++;
     }
     double value() const { return std::sqrt(errors/stated); }
+    void endTrial() { upTo.emplace_back(errors, stated); }
+
+    //! Of value(): numbers of one rig err together, so that rigs are left out in turn (jackknife).
+    double standardError() const
+    {
+        double squares = 0.;
+        for (size_t t = 0; t < upTo.size(); t++)
+        {
+            const Point2d without = upTo.back() - upTo[t] + (t ? upTo[t - 1] : Point2d());
+            squares += std::pow(std::sqrt(without.x/without.y) - value(), 2);
+        }
+        return upTo.size() > 1 ? std::sqrt(squares*(double)(upTo.size() - 1)/(double)upTo.size()) : NAN;
+    }
     double within(double sigmas) const
     {
         return (double)std::count_if(each.begin(), each.end(), [=](double e) { return e < sigmas; })/(double)each.size();
@@ -461,6 +475,8 @@ Honesty honestyOf(const Setup& setup, int trials, unsigned salt)
             if (!setup.choosesLens())
                 compare(fit, truth, honesty);
             comparePoints(fit, truth, honesty);
+            for (auto& entry : honesty.ratios)
+                entry.second.endTrial();
         }
         catch (const std::exception& e)
         {
@@ -476,7 +492,8 @@ void print(const Setup& setup, const Honesty& honesty)
     std::cout << "[numbers] error over stated, " << setup.name() << " (" << honesty.trials << " trials, " << honesty.refused
               << " refused):";
     for (const auto& entry : honesty.ratios)
-        std::cout << ' ' << entry.first << format(" %.2f (%.0f%%)", entry.second.value(), 100*entry.second.within(1.96));
+        std::cout << ' ' << entry.first << format(" %.2f +- %.2f (%.0f%%)", entry.second.value(), entry.second.standardError(),
+                                                 100*entry.second.within(1.96));
     std::cout << std::endl;
     if (honesty.refused)
         std::cout << "    " << honesty.why << std::endl;

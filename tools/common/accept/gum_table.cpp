@@ -130,10 +130,10 @@ LinearQuantity planeDistanceOf(const TestPoints& points, const std::string& imag
     if (middle.dot(n) < 0)
         n = -n;
     MatrixXd D(used.size(), 3);
-    D << VectorXd::Ones(used.size()), X*axes.vectors.rightCols(2);
+    D << VectorXd::Ones(used.size()), product(X, axes.vectors.rightCols(2));
     Eigen::RowVector3d foot;
     foot << 1., -middle*axes.vectors.rightCols(2);
-    const Eigen::RowVectorXd weights = foot*pseudoInverse(D);
+    const Eigen::RowVectorXd weights = product(foot, pseudoInverse(D));
     quantity.value = middle.dot(n);
     for (size_t i = 0; i < used.size(); i++)
         quantity.weights.push_back({used[i], weights[i]*Vec3d(n[0], n[1], n[2])});
@@ -210,18 +210,18 @@ GumTable PointErrors::table(const LinearQuantity& quantity, const std::vector<Ce
     for (const auto& weight : quantity.weights)
     {
         const Eigen::RowVector3d w = rowOf(weight.second);
-        byCalibration += w*joint_.byCalibration[weight.first];
+        byCalibration += product(w, joint_.byCalibration[weight.first]);
         noise += noise_[weight.first]*(w*joint_.noise[weight.first]*w.transpose())(0, 0);
         meanNoise += noise_[weight.first]/quantity.weights.size();
     }
-    const double calibration = byCalibration*covariance_*byCalibration.transpose();
+    const double calibration = propagated(covariance_, byCalibration)(0, 0);
     const double dof = calibration_.dof > 0 ? calibration_.dof : INFINITE;
     double left = calibration;
     for (const UncertaintySource& s : calibration_.provenance.sources)
     {
         if (s.factor.rows != covariance_.rows())
             throw Failure("uncertainty_sources of the calibration are not of its cameras: was the file edited? Calibrate again");
-        const double variance = (byCalibration*toEigen(s.factor)).squaredNorm();
+        const double variance = product(byCalibration, toEigen(s.factor)).squaredNorm();
         add(result, s.name, s.given, s.std, variance, INFINITE);
         left -= variance;
     }

@@ -102,7 +102,7 @@ public:
             random_.fill(all, cv::RNG::NORMAL, 0., 1.);
         }
         w = w*noise_.asDiagonal();
-        ewmas_.add(parameters, innovation.stdAlone.cwiseInverse().asDiagonal()*innovation.rootAlone*w);
+        ewmas_.add(parameters, innovation.stdAlone.cwiseInverse().asDiagonal()*product(innovation.rootAlone, w));
         const Eigen::RowVectorXd t2 = w.colwise().squaredNorm();
         const std::vector<double> least = leastProbabilities(t2, parameters, innovation.rank());
         std::vector<double> sorted = least;
@@ -251,7 +251,7 @@ std::vector<ChartPoint> controlCharts(const CheckHistory& history, const MatrixX
             point.seen[parameters[i]] = true;
             point.std[parameters[i]] = innovation.stdAlone[(Eigen::Index)i];
         }
-        point.t2 = innovation.value.col(0).dot(innovation.inverse*innovation.value.col(0));
+        point.t2 = innovation.value.col(0).dot(timesVector(innovation.inverse, innovation.value.col(0)));
         point.dof = innovation.rank();
         point.critical = limits[t].critical;
         point.limit = limits[t].limit;

@@ -106,14 +106,15 @@ private:
     {
         const int size = history_.changes[first.change].size();
         const MatrixXd A = A_.block(first.at, 0, size, size);
-        const FullPivLU lu(A);
-        if (!lu.isInvertible())
+        const PivotedQR qr(A);
+        if (qr.rank() < size)
             return;
-        const VectorXd b = b_.segment(first.at, size), value = lu.solve(b);
+        const VectorXd b = b_.segment(first.at, size), value = qr.solve(b);
         if (!(b.dot(value) > best.gain))
             return;
+        const MatrixXd covariance = qr.solve(MatrixXd(MatrixXd::Identity(size, size)));
         const double factor = history_.changes[first.change].factor;
-        best = {first.change, first.fromStart, first.since, first.steady, b.dot(value), factor*value, factor*factor*lu.inverse()};
+        best = {first.change, first.fromStart, first.since, first.steady, b.dot(value), factor*value, factor*factor*covariance};
     }
 
     static const int MOST_AXES = 3;

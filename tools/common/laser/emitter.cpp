@@ -153,7 +153,7 @@ VectorXd EmitterPrior::deviation(const Emitter& other) const
 
 Emitter EmitterPrior::moved(const Emitter& from, const VectorXd& step) const
 {
-    const VectorXd by = basis_*step;
+    const VectorXd by = timesVector(basis_, step);
     Emitter result = from;
     result.R = rotationMatrix(Vec3d(by[0], by[1], by[2]))*from.R;
     result.position += Vec3d(by[3], by[4], by[5]);

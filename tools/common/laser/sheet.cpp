@@ -123,7 +123,7 @@ MatrixXd PlaneSurface::basis() const
 
 std::shared_ptr<const SheetSurface> PlaneSurface::moved(const VectorXd& step) const
 {
-    const VectorXd by = basis()*step;
+    const VectorXd by = timesVector(basis(), step);
     const Vec4d plane = plane_ + Vec4d(by[0], by[1], by[2], by[3]);
     return std::make_shared<PlaneSurface>(plane/norm(Vec3d(plane.val)), coefficients_);
 }
@@ -232,8 +232,8 @@ OnSheetDerivatives differentiateOnSheet(const Calibration& calibration, const Sh
         const Eigen::Matrix3d inverse = inverse3(M);
         result.byAcross.middleRows(3*i, 3) = inverse*Eigen::Vector3d(line[i].across[0], line[i].across[1], 0.);
         result.byState.middleRows(3*i, 3) = -inverse.col(2)*from.byState.row(i);
-        result.byParameters.middleRows(3*i, 3) = -inverse.leftCols(2)*d.byParameters.middleRows(2*i, 2)
-            + result.byState.middleRows(3*i, 3)*sheetByParameters;
+        result.byParameters.middleRows(3*i, 3) = product(result.byState.middleRows(3*i, 3), sheetByParameters)
+            - product(inverse.leftCols(2), d.byParameters.middleRows(2*i, 2));
     }
     return result;
 }
@@ -272,8 +272,8 @@ Measurement measureOnSheet(const Calibration& calibration, const Sheet& sheet, c
         {
             const Eigen::Index row = 3*(Eigen::Index)i + k;
             variance[k] = std::pow(line[i].sigma*d.byAcross(row, 0), 2)
-                + (d.byState.row(row)*ofSheet*d.byState.row(row).transpose())(0, 0)
-                + (d.byParameters.row(row)*C*d.byParameters.row(row).transpose())(0, 0);
+                + propagated(ofSheet, d.byState.row(row))(0, 0)
+                + propagated(C, d.byParameters.row(row))(0, 0);
         }
         result.sigma.emplace_back(std::sqrt(variance[0]), std::sqrt(variance[1]), std::sqrt(variance[2]));
     }

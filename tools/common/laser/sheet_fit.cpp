@@ -245,16 +245,16 @@ void judgeLines(const Boards& boards, Estimate& estimate, SheetFit& fit)
         judgeBend(rows, line);
         noises.push_back(line.noise);
         const SheetStep others = estimate.step((int)m);
-        const VectorXd e = rows.e + rows.byState*others.step;
+        const VectorXd e = rows.e + timesVector(rows.byState, others.step);
         line.heldOut.rms = std::sqrt(e.squaredNorm()/e.size());
-        const MatrixXd byParameters = rows.byParameters + rows.byState*others.byParameters;
+        const MatrixXd byParameters = rows.byParameters + product(rows.byState, others.byParameters);
         const double variance = rows.sigma.squaredNorm()
-            + fit.poseNoise*fit.poseNoise*(rows.byPose*rows.ofPose*rows.byPose.transpose()).trace()
-            + (rows.byState*others.covariance*rows.byState.transpose()).trace()
-            + (byParameters*C*byParameters.transpose()).trace();
+            + fit.poseNoise*fit.poseNoise*propagated(rows.ofPose, rows.byPose).trace()
+            + propagated(others.covariance, rows.byState).trace()
+            + propagated(C, byParameters).trace();
         line.heldOut.stated = std::sqrt(variance/e.size());
-        const MatrixXd byCamera = rows.byState*all.byParameters;
-        variances += (rows.byState*all.covariance*rows.byState.transpose()).trace() + (byCamera*C*byCamera.transpose()).trace();
+        const MatrixXd byCamera = product(rows.byState, all.byParameters);
+        variances += propagated(all.covariance, rows.byState).trace() + propagated(C, byCamera).trace();
         points += e.size();
         for (int i : line.points)
         {
@@ -306,8 +306,8 @@ SheetFit fitSheet(const std::vector<BoardImage>& images, const Calibration& cali
     fit.poseNoise = estimate.poseNoise;
     const SheetStep step = estimate.step();
     const MatrixXd basis = estimate.sheet->basis();
-    fit.sheet.covariance = toMat(basis*step.covariance*basis.transpose());
-    fit.sheet.byParameters = toMat(basis*step.byParameters);
+    fit.sheet.covariance = toMat(propagated(step.covariance, basis));
+    fit.sheet.byParameters = toMat(product(basis, step.byParameters));
     fit.sheet.scale = scale;
     if (fit.sheet.plane[3] < 0.)
     {

@@ -203,7 +203,8 @@ LineRows rowsOf(const Calibration& calibration, const BoardImage& image, const s
         const Eigen::Matrix2d GR = d.byPose.block(2*k, 3, 2, 3)*R2;
         const Eigen::RowVector2d byPixel = n*R2*inverse2(GR);
         rows.byPose.row(k) = n*image.pose.differentiatePoint(onBoard[k]) - byPixel*d.byPose.middleRows(2*k, 2);
-        rows.byParameters.row(k) = rows.byPose.row(k)*image.pose.byParameters - byPixel*d.byParameters.middleRows(2*k, 2);
+        rows.byParameters.row(k) = product(rows.byPose.row(k), image.pose.byParameters)
+            - product(byPixel, d.byParameters.middleRows(2*k, 2));
     }
     rows.ofPose = std::pow(std::max(pixelSigma, image.pose.residual), 2)*image.pose.byNoise;
     return rows;

@@ -4,6 +4,7 @@
 #include "measure/measured_doubts.hpp"
 #include "calibrate/given_std.hpp"
 #include "console/table.hpp"
+#include "math/dense.hpp"
 #include "measure/outside_image.hpp"
 #include "measure/point_error.hpp"
 #include <algorithm>
@@ -84,7 +85,7 @@ LengthScale lengthScaleOf(const Calibration& calibration, const std::vector<View
             ofNoise += by*joint.noise[i]*by.transpose();
             if (byCalibration.size() == 0)
                 byCalibration = Eigen::RowVectorXd::Zero(joint.byCalibration[i].cols());
-            byCalibration += by*joint.byCalibration[i];
+            byCalibration += refract::product(by, joint.byCalibration[i]);
         }
     }
     if (count == 0)
@@ -93,7 +94,7 @@ LengthScale lengthScaleOf(const Calibration& calibration, const std::vector<View
     if (calibration.covariance.empty())
         variance = std::numeric_limits<double>::quiet_NaN();
     else
-        variance += (byCalibration*toEigen(calibration.covariance)*byCalibration.transpose())(0)/((double)count*count);
+        variance += refract::propagated(toEigen(calibration.covariance), byCalibration)(0, 0)/((double)count*count);
     return {sum/count, std::sqrt(variance)};
 }
 

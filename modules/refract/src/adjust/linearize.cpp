@@ -56,7 +56,7 @@ ImageRows::ImageRows(const Problem& problem, const FreeSpace& space, int i, cons
     {
         const int own = space.columnsOf(blocks[b]);
         if (own > 0)
-            outer.middleCols(column, own) = d.byBlock[b]*space.bases[blocks[b]];
+            outer.middleCols(column, own) = product(d.byBlock[b], space.bases[blocks[b]]);
         column += own;
     }
 }

@@ -348,11 +348,11 @@ void Problem::addSharedWindow(int camera, Eigen::MatrixXd& basis) const
     const int ownerRow = publicRow(ParameterBlock::PLACE, owner);
     const TransferredWindow& window = *cameras_[camera].window;
     const int count = rig_.cameras[camera].layers().at().count;
-    Eigen::MatrixXd rows = window.byWindow*basis.middleRows(ownerRow, count);
+    Eigen::MatrixXd rows = product(window.byWindow, basis.middleRows(ownerRow, count));
     if (camera > 0)
-        rows += window.byCamera*basis.middleRows<6>(publicRow(ParameterBlock::EXTRINSICS, camera));
+        rows += product(window.byCamera, basis.middleRows<6>(publicRow(ParameterBlock::EXTRINSICS, camera)));
     if (owner > 0)
-        rows += window.byOwner*basis.middleRows<6>(publicRow(ParameterBlock::EXTRINSICS, owner));
+        rows += product(window.byOwner, basis.middleRows<6>(publicRow(ParameterBlock::EXTRINSICS, owner)));
     basis.middleRows(row, count) = rows;
 }
 

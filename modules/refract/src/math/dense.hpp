@@ -32,19 +32,6 @@ Eigen::MatrixXd inverse(const MatrixRef& A);
 Eigen::Matrix2d inverse2(const Eigen::Matrix2d& A);
 Eigen::Matrix3d inverse3(const Eigen::Matrix3d& A);
 
-//! P A Q = L U: of a matrix that may be singular.
-class FullPivLU
-{
-public:
-    explicit FullPivLU(const MatrixRef& A);
-    bool isInvertible() const;
-    Eigen::MatrixXd inverse() const;
-    Eigen::VectorXd solve(const Eigen::VectorXd& b) const;      //!< A^-1 b
-
-private:
-    std::shared_ptr<const Eigen::FullPivLU<Eigen::MatrixXd> > lu_;
-};
-
 //! A = L L^T, of the lower half of A.
 class LLT
 {
@@ -108,7 +95,7 @@ private:
     std::shared_ptr<const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> > qr_;
 };
 
-//! A^+, by a complete orthogonal decomposition. @param threshold as PivotedQR's
+//! A^+, of least squares and, of these, the least norm. @param threshold as PivotedQR's
 Eigen::MatrixXd pseudoInverse(const MatrixRef& A);
 Eigen::MatrixXd pseudoInverse(const MatrixRef& A, double threshold);
 

@@ -14,9 +14,4 @@ MatrixXd inverse(const MatrixRef& A) { return A.inverse(); }
 Eigen::Matrix2d inverse2(const Eigen::Matrix2d& A) { return A.inverse(); }
 Eigen::Matrix3d inverse3(const Eigen::Matrix3d& A) { return A.inverse(); }
 
-FullPivLU::FullPivLU(const MatrixRef& A) : lu_(std::make_shared<Eigen::FullPivLU<MatrixXd> >(A)) {}
-bool FullPivLU::isInvertible() const { return lu_->isInvertible(); }
-MatrixXd FullPivLU::inverse() const { return lu_->inverse(); }
-VectorXd FullPivLU::solve(const VectorXd& b) const { return lu_->solve(b); }
-
 }} // namespace

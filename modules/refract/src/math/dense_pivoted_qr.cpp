@@ -33,4 +33,17 @@ MatrixXd PivotedQR::solveR(const MatrixRef& B) const
     return qr_->colsPermutation()*X;
 }
 
+// A = Q R of the rank's rows of R; R^T has all columns, so that R^+ is the transpose of R^T's least squares.
+static MatrixXd pseudoInverse(const PivotedQR& qr, const MatrixRef& A)
+{
+    const int rank = qr.rank();
+    if (rank == 0)
+        return MatrixXd::Zero(A.cols(), A.rows());
+    const MatrixXd R = qr.rotate(A).topRows(rank), Qt = qr.rotate(MatrixXd::Identity(A.rows(), A.rows())).topRows(rank);
+    return transposeTimes(QR(R.transpose()).solve(MatrixXd(MatrixXd::Identity(A.cols(), A.cols()))), Qt);
+}
+
+MatrixXd pseudoInverse(const MatrixRef& A) { return pseudoInverse(PivotedQR(A), A); }
+MatrixXd pseudoInverse(const MatrixRef& A, double threshold) { return pseudoInverse(PivotedQR(A, threshold), A); }
+
 }} // namespace

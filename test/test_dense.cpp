@@ -1,7 +1,6 @@
 // This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
 // SPDX-License-Identifier: Apache-2.0
 
-// Roots of covariances of parameters whose sizes differ by orders.
 #include "math/dense.hpp"
 #include "scenes.hpp"
 
@@ -19,6 +18,11 @@ MatrixXd covarianceOf(int n, int rank, scenes::Random& random)
         for (int k = 0; k < rank; k++)
             root(i, k) = std::pow(10., 12.*i/(n - 1) - 6)*random.normal(1.);
     return timesTranspose(root, root);
+}
+
+MatrixXd drawn(scenes::Random& random, int rows, int columns)
+{
+    return MatrixXd::NullaryExpr(rows, columns, [&](Eigen::Index, Eigen::Index) { return random.normal(1.); });
 }
 
 } // namespace
@@ -52,4 +56,25 @@ TEST_CASE("What has no variance has no part in the root of a covariance", "[dens
     const CorrelationSpectrum nothing(MatrixXd::Zero(3, 3));
     CHECK(nothing.rank() == 0);
     CHECK(nothing.deviations.isZero(0.));
+}
+
+// The four conditions of Moore and Penrose, of matrices of any shape and rank.
+TEST_CASE("A pseudo-inverse is that of Moore and Penrose", "[dense]")
+{
+    std::cout << "seed " << scenes::seed() << '\n';
+    scenes::Random numbers(scenes::seed());
+    const struct { int rows, columns, rank; } shapes[] = {{5, 5, 5}, {9, 4, 4}, {4, 9, 4}, {9, 6, 3}, {6, 9, 2}, {3, 3, 0}, {1, 4, 1},
+                                                          {4, 1, 1}};
+    for (const auto& [rows, columns, rank] : shapes)
+    {
+        CAPTURE(rows, columns, rank);
+        const MatrixXd A = product(drawn(numbers, rows, rank), drawn(numbers, rank, columns));
+        const MatrixXd X = pseudoInverse(A, 1e-10), AX = A*X, XA = X*A;
+        REQUIRE(X.rows() == columns);
+        REQUIRE(X.cols() == rows);
+        CHECK((AX*A - A).norm() <= 1e-12*A.norm());
+        CHECK((XA*X - X).norm() <= 1e-12*X.norm());
+        CHECK((AX - AX.transpose()).norm() < 1e-12);
+        CHECK((XA - XA.transpose()).norm() < 1e-12);
+    }
 }
