@@ -302,34 +302,34 @@ static bool isMinimum(const Camera& camera, const ImagePoints& points, const Pos
 
 /** Maximum likelihood from a start that may be within the window, as a closed form's may of a target that is close to it: that is moved
 away from the camera until all points have an image.
-@param isPlace gets whether the end is a place to start other fits from only, as points would leave the images beyond it */
-static PoseMinimum refineShown(const Camera& camera, const ImagePoints& points, const Pose& start, bool& isPlace)
+@param isAtBoundary gets whether the descent ended at the window, as points would leave the images beyond it: a start, no minimum */
+static PoseMinimum refineShown(const Camera& camera, const ImagePoints& points, const Pose& start, bool& isAtBoundary)
 {
     PoseMinimum minimum = { start, NaN };
-    isPlace = false;
+    isAtBoundary = false;
     for (double farther : { 1., 1.03, 1.1, 1.25 })
     {
         minimum.pose = start;
         minimum.pose.tvec *= farther;
         minimum.rms = refinePose(camera, points, minimum.pose);
-        isPlace = farther > 1 && !isMinimum(camera, points, minimum.pose);
+        isAtBoundary = farther > 1 && !isMinimum(camera, points, minimum.pose);
         if (!std::isnan(minimum.rms))
             break;
     }
     return minimum;
 }
 
-//! @param placesToo also those that are no minima, see refineShown
-static std::vector<PoseMinimum> descend(const Camera& camera, const ImagePoints& points, const Pose& start, bool placesToo)
+//! @param withBoundary also those that are no minima, see refineShown
+static std::vector<PoseMinimum> descend(const Camera& camera, const ImagePoints& points, const Pose& start, bool withBoundary)
 {
     std::vector<PoseMinimum> minima;
     if (points.rows() < 6 || scatterRank(points.object) < 2)
         return minima;
     for (const Pose& pose : start.found ? std::vector<Pose>(1, start) : startsOf(camera, points))
     {
-        bool isPlace;
-        const PoseMinimum minimum = refineShown(camera, points, pose, isPlace);
-        if (!std::isnan(minimum.rms) && (placesToo || !isPlace) && isNew(minima, minimum))
+        bool isAtBoundary;
+        const PoseMinimum minimum = refineShown(camera, points, pose, isAtBoundary);
+        if (!std::isnan(minimum.rms) && (withBoundary || !isAtBoundary) && isNew(minima, minimum))
             minima.push_back(minimum);
     }
     sortByError(minima);

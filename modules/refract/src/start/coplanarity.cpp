@@ -12,6 +12,7 @@ squares: two angles are left to search. */
 #include "start/coplanarity.hpp"
 #include "math/dense.hpp"
 #include "math/rotation.hpp"
+#include "start/multi_start.hpp"
 
 namespace cv { namespace refract {
 
@@ -165,7 +166,6 @@ Candidate bestOfTilt(double tilt, double step, const std::vector<ViewMoments>& v
 std::vector<Vec3d> normalsByCoplanarity(const Camera& camera, const RigViews& views)
 {
     const double STEP = 0.1, TILTS = 0.15, STEEPEST = 1.1, SMALLEST = 1e-4;     // radians
-    const double EXCLUDED = 100;        // variances
     const size_t MOST = 3;
     std::vector<ViewMoments> moments;
     int freedom = -2;
@@ -189,7 +189,7 @@ std::vector<Vec3d> normalsByCoplanarity(const Camera& camera, const RigViews& vi
     // Where rays are bent by little, the azimuth shows and the tilt hardly.
     for (const Candidate& other : candidates)
         if (normals.size() < MOST && other.normal.dot(best.normal) < std::cos(TILTS/2) &&
-            (other.squares - best.squares)*freedom < EXCLUDED*best.squares)
+            (other.squares - best.squares)*freedom < PLAUSIBLE*PLAUSIBLE*best.squares)
             normals.push_back(other.normal);
     return normals;
 }
