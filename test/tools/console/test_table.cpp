@@ -52,3 +52,11 @@ TEST_CASE("A wide table fits 100 columns and loses no word", "[table]")
     for (std::string word; in >> word; )
         CHECK_THAT(first, Catch::Contains(word));
 }
+
+TEST_CASE("Of alternatives the first are said, and how many others there are", "[table]")
+{
+    CHECK(alternatives({"a", "b", "c"}, 3) == "a; or b; or c");
+    CHECK(alternatives({"a", "b", "c", "d"}, 3) == "a; or b; or c; or d");
+    CHECK(alternatives({"a", "b", "c", "d", "e"}, 3) == "a; or b; or c; or one of 2 others");
+    CHECK(alternatives({"a"}, 0) == "a");
+}

@@ -188,15 +188,17 @@ TEST_CASE("A disk that is full is told, and what was there stays", "[tools][outp
         "refract_calib" + TARGET + " --thickness=20 --index=1.5437 --direct='" + STEREO + "/direct1/*' --glass='" + STEREO
             + "/glass1/*' --no-cross-validation --quiet --out=",
         "refract_export " + in.calib + " --to=opencv --range=400,800 --out=",
+        "refract_epilines " + in.calib + " " + in.left + " " + in.right + TARGET + " --quiet --out=",
         "refract_board" + TARGET + " --out="};
     for (const std::string& command : commands)
     {
-        const std::string out = f/(command.find("board") == std::string::npos ? "old.yml" : "old.pdf");
+        const std::string out = f/(mentions(command, "board") ? "old.pdf" : mentions(command, "epilines") ? "old.png" : "old.yml");
         std::ofstream(out) << "old";
         const ToolResult result = runTool(command + out, full);
         CAPTURE(command, result.out, result.err);
         CHECK(result.code == 1);
         CHECK(mentions(result.err, "is the disk full?"));
+        CHECK(std::count(result.err.begin(), result.err.end(), '\n') == 1);     // the libraries' own words are not for users
         CHECK(readFile(out) == "old");
     }
 }

@@ -254,8 +254,11 @@ void writeImage(const std::string& path, const cv::Mat& image, const std::vector
     OutputFile file(path);
     if (!cv::haveImageWriter(file.temporary()))
         throw Failure("cannot write '" + path + "': no image format has this extension; use .png or .jpg");
-    if (!cv::imwrite(file.temporary(), image, parameters))
-        throw Failure("cannot write '" + path + "': is the disk full?");
+    // Into memory first: libpng prints what a full disk makes of it.
+    std::vector<uchar> bytes;
+    if (!cv::imencode(fs::path(file.temporary()).extension().string(), image, bytes, parameters))
+        throw Failure("cannot write '" + path + "': its format cannot keep such an image");
+    writeInto(file, path, std::string(bytes.begin(), bytes.end()));
     file.commit();
 }
 

@@ -170,6 +170,8 @@ std::vector<std::string> firstOf(const std::vector<std::string>& lines, size_t c
 
 std::string alternatives(const std::vector<std::string>& sentences, size_t most)
 {
+    if (sentences.size() - std::min(most, sentences.size()) == 1)        // to say that there is one other takes as many words
+        most++;
     std::string text;
     for (size_t i = 0; i < std::min(most, sentences.size()); i++)
         text += (i ? "; or " : "") + sentences[i];
