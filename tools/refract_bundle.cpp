@@ -243,6 +243,7 @@ int bundleMatches(const Options& options, const Calibration& file, const Command
     checkPlaces(start, [&](const BundleStart& freed) { return adjustBundle(freed, matches, lengths, options.robust); }, findings);
     explain(options, file, matches, lengths, start, adjustment, findings);
     const std::string unit = unitOf(options, file);
+    writeCalibration(options.out, resultOf(options, adjustment, findings, file, unit, command));
     if (!options.pointsOut.empty())
         writeText(options.pointsOut, pointsCsv(matches, adjustment, stemOf(options.points)));
     if (!options.summary.empty())
@@ -252,7 +253,6 @@ int bundleMatches(const Options& options, const Calibration& file, const Command
             json.set("wand", seen.wand);
         writeText(options.summary, json.text(2) + "\n");
     }
-    writeCalibration(options.out, resultOf(options, adjustment, findings, file, unit, command));
     if (!command.quiet())
         printBundle(std::cout, matches, adjustment, findings, unit);
     return ended(options, adjustment, findings);
@@ -267,6 +267,7 @@ int bundleSurvey(const Options& options, const Calibration& file, const Command&
     survey.maxRms = options.maxRms;
     const BundleStart start = startWith(options, options.bundle, file);
     SurveyResult result = adjustColmap(survey, start, unitOf(options, file), command.quiet());
+    writeCalibration(options.out, resultOf(options, result.adjustment.bundle, result.findings, file, result.unit, command));
     if (!options.pointsOut.empty())
         writeText(options.pointsOut, surveyPointsCsv(result));
     if (!options.posesOut.empty())
@@ -278,7 +279,6 @@ int bundleSurvey(const Options& options, const Calibration& file, const Command&
     if (!options.colmapOut.empty())
         writeColmapModel(refractedModel(result), options.colmapOut,
                          "refract_bundle: poses and points through windows, nearest pinholes, less " + originText(result.start));
-    writeCalibration(options.out, resultOf(options, result.adjustment.bundle, result.findings, file, result.unit, command));
     if (!command.quiet())
         std::cout << said.str();
     return ended(options, result.adjustment.bundle, result.findings);

@@ -226,6 +226,18 @@ TEST_CASE("What a full disk does not take is kept elsewhere, and it is said wher
     CHECK(std::count(text.begin(), text.end(), '\n') == 31);
 }
 
+TEST_CASE("The calibration is written before what can be made of it anew", "[tools][outputs]")
+{
+    const TemporaryFolder f;
+    const std::string wand = paths::bundled() + "/wand/";
+    const ToolResult result = runTool("refract_bundle " + wand + "start.yml --points=" + wand + "matches.csv --lengths=" + wand
+        + "lengths.csv --quiet --points-out=/dev/full --out=" + (f / "calib.yml"));
+    CAPTURE(result.err);
+    CHECK(result.code == 1);
+    CHECK(mentions(result.err, "/dev/full"));
+    CHECK(cv::FileStorage(f / "calib.yml", cv::FileStorage::READ).isOpened());
+}
+
 TEST_CASE("A table that cannot be printed is a failure", "[tools][outputs]")
 {
     const Inputs in;
