@@ -131,6 +131,46 @@ TEST_CASE("Water taken for air is found from glass-only views, and refused", "[d
                                                                               && Catch::Contains("--outer-index=1.333"));
 }
 
+TEST_CASE("Water taken for air is found by each camera of a sealed rig alone", "[diagnosis][slow]")
+{
+    scenes::Random random(916);
+    CAPTURE(scenes::seed());
+    const double NOISE = 0.02;          // px
+    RigModel wet = paperRig(2);
+    CalibrationInput input = rightlyGiven(2, random);
+    input.options.window = wet.cameras[0]->window();
+    input.options.window.distance = 30.;
+    input.options.flags = GLASS_FREE_INTRINSICS;
+    input.data.views.clear();
+    for (int c = 0; c < 2; c++)
+    {
+        Mat lens = wet.cameras[c]->lensParameters().clone();
+        lens.at<double>(0) = lens.at<double>(1) = 1000.;        // wide: refraction is no radial distortion
+        wet.cameras[c]->setLensParameters(lens);
+        GlassWindow window = wet.cameras[c]->window();
+        window.distance = 30.;
+        window.outerIndex = 1.333;
+        wet.cameras[c]->setWindow(window);
+        input.options.known[c].reset();
+    }
+    for (int i = 0; i < 20; i++)
+    {
+        const Vec3d tvec(random.uniform(-60, 60), random.uniform(-60, 60), random.uniform(450, 650));
+        input.data.views.push_back(observe(wet, board(6, 5), random.vector(0.5), tvec, false, NOISE, random));
+        for (std::vector<Point2d>& pixels : input.data.views.back().direct)
+            pixels.clear();
+    }
+    const double clean = 1.6*NOISE;
+    const Explanation medium = wrongMediumOfEach(input, clean);
+    CHECK_THAT(medium.sentence, Catch::Contains("--outer-index=1.333 in place of 1"));
+    CHECK(medium.px < clean);
+    CHECK(noiseOfImages(input) > NOISE/2);          // a start is far from the lens: smooth maps leave a little of that
+
+    input.options.window.outerIndex = 1.333;
+    input.options.flags |= GLASS_FREE_DISTANCE;
+    CHECK(!(wrongMediumOfEach(input, clean).px < NO_FIT));
+}
+
 TEST_CASE("Images exchanged, moved or of other moments are found and named", "[diagnosis][slow]")
 {
     scenes::Random random(920);

@@ -76,6 +76,9 @@ bool knowsLenses(const CalibrationInput& input)
     return std::any_of(input.options.known.begin(), input.options.known.end(), [](const auto& lens) { return bool(lens); });
 }
 
+//! Lenses, too, only images through the windows tell.
+bool isSealed(const CalibrationInput& input) { return !input.data.hasDirect() && !knowsLenses(input); }
+
 //! Not a value near what is given.
 const Mistake FAR_OFF[] = {
     {knowsLenses, wrongFocalLength},
@@ -201,6 +204,14 @@ std::vector<std::string> confirmedClear(const CalibrationInput& input, const Mix
 places of their own come last, as they explain any other. */
 std::vector<std::string> imageMistakes(const CalibrationInput& input, const MixUps& mixUps, const PlainFit& plain)
 {
+    if (isSealed(input) && isRig(input))
+    {
+        PlainFit alone;
+        alone.noise = noiseOfImages(input);
+        const Explanation medium = wrongMediumOfEach(input, cleanError(input, alone));
+        if (medium.px < NO_FIT)
+            return {fits(input, medium, 0.)};
+    }
     const double sound = largestSoundError(input.data), clean = cleanError(input, plain);
     if (!hasPairs(input.data))          // of hand-held boards a window or a lens between two others explains much, too
     {

@@ -156,6 +156,19 @@ static Fit unfitted(const RigData& data, const RigModel& start, const std::vecto
     return fit;
 }
 
+double noiseOfImages(const CalibrationInput& input)
+{
+    try
+    {
+        std::vector<LensSource> sources;
+        return imageNoise(startModel(input.data, exactly(input.options), sources), input.data.views).sigma;
+    }
+    catch (const std::exception&)       // no start
+    {
+        return 0.;
+    }
+}
+
 PlainFit fitPlainly(const CalibrationInput& input, const std::optional<RigModel>& found)
 {
     PlainFit plain;

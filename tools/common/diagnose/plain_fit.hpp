@@ -26,6 +26,9 @@ struct PlainFit
     std::optional<Explanation> otherMedium;     //!< wrongMedium, once it was tried
 };
 
+//! px, what smooth maps leave of each image before any fit (imageNoise); 0: not known
+double noiseOfImages(const CalibrationInput& input);
+
 //! @param found where an earlier fit, with what is given as exact, met the only minimum
 PlainFit fitPlainly(const CalibrationInput& input, const std::optional<RigModel>& found = std::nullopt);
 

@@ -163,6 +163,24 @@ Explanation wrongMedium(const CalibrationInput& input)
             medianErrorOfFit(input.data, options)};
 }
 
+Explanation wrongMediumOfEach(const CalibrationInput& input, double clean)
+{
+    Explanation worst{"", NO_FIT};
+    for (int c = 0; c < input.data.cameraCount; c++)
+    {
+        const CalibrationInput one = oneCamera(input, c);
+        const Explanation other = wrongMedium(one);
+        const double given = medianErrorOfFit(one.data, one.options);
+        if (other.px == NO_FIT && given == NO_FIT)      // its images determine no lens by themselves
+            continue;
+        if (!(other.px < clean) || !(EXPLAINS_AS_WELL*other.px < given))
+            return {"", NO_FIT};
+        if (worst.px == NO_FIT || worst.px < other.px)
+            worst = other;
+    }
+    return worst;
+}
+
 Explanation wrongShape(const CalibrationInput& input)
 {
     const GlassWindow& given = input.options.window;

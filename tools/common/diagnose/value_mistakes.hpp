@@ -23,6 +23,11 @@ Explanation wrongIndex(const CalibrationInput& input);
 //! Water taken for air, or air for water.
 Explanation wrongMedium(const CalibrationInput& input);
 
+/** The same of a sealed rig, by each camera alone: that is quick, and no place between cameras in a wrong medium is searched for. NO_FIT
+unless the other medium leaves each camera that can tell no more than noise, and far less than the given one.
+@param clean px, of noise */
+Explanation wrongMediumOfEach(const CalibrationInput& input, double clean);
+
 //! A dome taken for a pane, or a pane for a dome; the radius is estimated.
 Explanation wrongShape(const CalibrationInput& input);
 
