@@ -68,7 +68,7 @@ def calibrate(programs, rig, options):
         subprocess.run([programs/"refract_simulate", path/"rig.yml", f"--out-dir={path}", "--quiet"], check=True)
         subprocess.run([programs/"refract_calib", "--pattern=chessboard", "--size=6x5", "--square=39", "--square-std=0.002",
                         "--thickness=20", "--index=1.5437", f"--direct={path}/direct1/*", f"--glass={path}/glass1/*",
-                        f"--direct2={path}/direct2/*", f"--glass2={path}/glass2/*", f"--out={path}/calib.yml",
+                        f"--direct={path}/direct2/*", f"--glass={path}/glass2/*", f"--out={path}/calib.yml",
                         f"--summary={path}/summary.json", "--no-cross-validation", "--quiet", *options], check=True,
                        stdout=subprocess.DEVNULL)
         return json.loads((path/"summary.json").read_text(encoding="utf-8"))

@@ -30,7 +30,7 @@ target="--pattern=chessboard --size=6x5 --square=39"
 
 # shellcheck disable=SC2086  # the target is three options
 $bin/refract_calib $target --thickness=20 --index=1.5437 \
-  --direct="$data/direct1/*" --glass="$data/glass1/*" --direct2="$data/direct2/*" --glass2="$data/glass2/*" \
+  --direct="$data/direct1/*" --glass="$data/glass1/*" --direct="$data/direct2/*" --glass="$data/glass2/*" \
   --out=out/calib.yml --report=out/report.html --pinhole-out=out/pinhole_through_glass.yml
 
 for range in z540 z600 z800 z1200; do

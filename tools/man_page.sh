@@ -34,7 +34,7 @@ version=$("$1" --version)
       if (wasExample)
           print ".fi"
       for (i = usage + 1; i <= NR; i++) {
-          if (line[i] ~ /^[A-Z][a-z]*:$/) {
+          if (line[i] ~ /^[A-Z][a-z ]*:$/) {
               heading = toupper(line[i])
               sub(/:$/, "", heading)
               print ".SH " heading

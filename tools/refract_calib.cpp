@@ -10,9 +10,10 @@ static const char MANUAL[] = R"(Calibrates the windows in front of one camera, a
 Direct images show the target without the window, glass images through it. Where two have the same name (without folder
 and extension) the target must not have moved between them: such pairs determine the window best. Take four of them, and 12
 or more direct images in all: these serve the lens, unless --camera gives it, in one fit with the window, so that the lens's
-uncertainty is in every +-. With --direct2 and --glass2 (to --direct16 and --glass16, and --camera2 to --camera16) the same name
-means the same moment in all cameras, with or without what all names of one camera begin or end with (left01, right01); where that is
-not clear, --view-pattern='*_cam*_{}' says where the moment stands.
+uncertainty is in every +-. Two cameras or more say --direct, --glass and --camera once for each, in the cameras' order, or with their
+numbers: --glass='left/*' --glass='right/*' is --glass='left/*' --glass2='right/*', and --camera3 is that of camera 3, whatever the
+others have. The same name means the same moment in all cameras, with or without what all names of one camera begin or end with
+(left01, right01); where that is not clear, --view-pattern='*_cam*_{}' says where the moment stands.
 Each camera looks through its own window, unless --shared-window (all through one) or --window-of-camera=1,1,2,2 (cameras 1 and 2
 through one, 3 and 4 through another) says otherwise.
 
@@ -22,7 +23,7 @@ what several cameras see is matched by view and x, y, z. If all inputs are such 
 
 --target=points.csv: a target of dots on one level or several, as PIV and PTV have them: id,x,y,z of each dot, or OpenPTV's list. Its
 dots are found in images, bright or dark, if 40 % of them are seen; or in tables of points with these names, of any program
-(doc/formats.md), given for each camera as --glass=t.csv --glass2=t.csv: camera 2 is u2,v2 of it.
+(doc/formats.md), given for each camera as --glass=t.csv --glass=t.csv: camera 2 is u2,v2 of it.
 
 --poses=poses.csv: the target's poses in camera 1 are known: view,rx_deg,ry_deg,rz_deg,tx,ty,tz,sigma_deg,sigma, one row a view:
 rotation vector, translation, and their standard deviations about and along each axis (none: exact). Lengths in --unit, or in
@@ -38,7 +39,7 @@ surface: id,x,y,z[,sx,sy,sz] in the frame of the camera (its centre the origin, 
 cameras' calibration without the window. They tell normal and distance together; what all of them share is in --normal-std and
 --distance-std (default: 1 mm, how well the centre of a camera is known).
 
---watch waits while cameras fill the folders of --direct, --glass, --direct2, ... (--watch=FOLDER: only that one), says after each
+--watch waits while cameras fill the folders of all --direct and --glass (--watch=FOLDER: only that one), says after each
 image whether the board was found, how sharp and how well exposed it is, which image its name still waits for, and what the next one
 should show. Copies and files that cannot be read are named and left out. Then it calibrates: after --watch-count images or
 --watch-pairs pairs, when --max-error-at and --max-normal-std are met by what came so far, when the best next pair would gain less than
@@ -125,55 +126,58 @@ ErrorLimit parseErrorLimit(const std::string& text)
     return limit;
 }
 
+void requireCountOfCameras(const OptionParser& parser, const Options& o)
+{
+    const int cameras = o.images.sources.cameraCount();
+    for (int c = 0; c < cameras; c++)
+        if (o.images.sources.glass[c].empty())
+            throw Failure(format("--glass%d is given, but no --glass%s: number the cameras 1, 2, 3, ... without a gap", cameras,
+                                 cameraSuffix(c).c_str()));
+    for (const char* ofSeveral : {"--shared-window", "--window-of-camera"})
+        if (cameras == 1 && parser.get(ofSeveral).count() > 0)
+            throw Failure(std::string(ofSeveral) + " requires --glass2");
+    if (cameras > 1 && o.target.partial)
+        throw Failure("--partial excludes --glass2");
+}
+
 Options parseOptions(Command& command)
 {
     Options o;
     std::vector<std::string> maxErrors, notes;
     OptionParser& parser = command.parser;
+    parser.beginGroup("Board");
     o.target.addTo(parser, false);
+    parser.addFlag("--partial", o.target.partial, "a chessboard that may be partly out of view, or is cut at its edge: any piece "
+        "of it will do; --size counts all corners of the whole board, the outermost found ones are left out");
     o.target.addDotsTo(parser);
     addYFrom(parser, o.images.sources.yFrom).needs(parser.get("--target"));
-    o.images.sources.addTo(parser, "images through the window: glob, corners.vnl or points.csv", "images without the window: the same");
-    o.images.watch.addTo(parser);
-    parser.get("--view-pattern").excludes(parser.get("--watch"));
-    parser.add("--watch-gain", o.images.watchGain, "end when the best next pair would take off less than so many percent of the "
-        "calibration's part of a point's error").needs(parser.get("--watch")).check(moreThanZero());
-    Option glass2 = parser.get("--glass2");
-    for (int c = 0; c < MAX_CAMERAS; c++)
-    {
-        Option camera = parser.add("--camera" + cameraSuffix(c), o.camera[c], c ? "lens of camera " + cameraSuffix(c)
-            : "lens: OpenCV's YAML, XML, JSON, a file of ROS, Kalibr, COLMAP, MATLAB, NumPy, mrcal, ... (doc/formats.md); default: from "
-              "--direct");
-        if (c)
-            camera.needs(parser.get("--glass" + cameraSuffix(c)));
-        if (c > 1)
-            camera.hide();              // told in the manual
-    }
+    parser.beginGroup("Images");
+    o.images.sources.addTo(parser, "images through the window: the same", "images without the window: glob, corners.vnl or points.csv; "
+        "once for each camera, or by its number (--direct3)");
+    parser.addForEach("--camera", o.camera.data(), MAX_CAMERAS, "lens: OpenCV's YAML, XML, JSON, a file of ROS, Kalibr, COLMAP, MATLAB, "
+        "NumPy, mrcal, ... (doc/formats.md); once for each camera; default: from --direct", "--glass");
     parser.add("--lens", o.lens, "lens model that the images determine: OpenCV's with that many coefficients, "
                "cv::fisheye's four, or auto: as many as held-out images support").check(isMember(lensNames()))
         .captureDefault();
-    o.given.window.addTo(parser, "where it is needed and not given, it is estimated");
-    o.given.std.addTo(parser);
-    o.given.places.addTo(parser);
     parser.add("--channel", o.channel, "of colour images, in which the target is looked for, and for which the calibration is "
         "valid (default: the brightness of all)").check(isMember({"red", "green", "blue"}));
-    parser.add("--free", o.given.free, "what to estimate beside the normal, or the centre").delimiter(',')
-        .check(isMember(namesOf(freeFlags())));
     parser.add("--image-size", o.images.imageSize, "WxH; needed for corners.vnl and points.csv, otherwise checked");
     Option unpaired = parser.addFlag("--unpaired", o.images.unpaired, "equal names are no pairs (a hand-held board)");
-    parser.addFlag("--partial", o.target.partial, "a chessboard that may be partly out of view, or is cut at its edge: any piece "
-        "of it will do; --size counts all corners of the whole board, the outermost found ones are left out")
-        .needs(unpaired).excludes(glass2);
-    Option shared = parser.addFlag("--shared-window", o.given.sharedWindow, "all cameras look through the same pane")
-        .needs(glass2);
-    parser.add("--window-of-camera", o.given.windowOfCamera, "which window each camera looks through, as 1,1,2,2; equal numbers share "
-        "one pane (default: each has its own)").needs(glass2).excludes(shared);
+    parser.get("--partial").needs(unpaired);
     parser.add("--poses", o.images.poses, "known poses of the target in camera 1: poses.csv").excludes(unpaired);
-    parser.add("--out", o.out, "the calibration to write (.yml, .xml, .json)").required();
-    parser.add("--summary", o.summary, "JSON file with everything that the table and the report say");
-    parser.add("--report", o.report, "HTML page to assess the calibration by, and to keep (needs gnuplot)");
-    parser.add("--pinhole-out", o.pinholeOut, "also write the rig that cv::calibrateCamera and cv::stereoCalibrate make of "
-        "the images through the window, to compare with (refract_measure --compare-with)");
+    parser.addNegation("--no-robust", o.robust, "use all points as they are; by default wrong points and "
+        "images (dirt, wrong detections, a board that moved within its pair) are left out, and named");
+    parser.beginGroup("Window");
+    o.given.window.addTo(parser, "where it is needed and not given, it is estimated");
+    parser.add("--free", o.given.free, "what to estimate beside the normal, or the centre").delimiter(',')
+        .check(isMember(namesOf(freeFlags())));
+    Option shared = parser.addFlag("--shared-window", o.given.sharedWindow, "all cameras look through the same pane");
+    parser.add("--window-of-camera", o.given.windowOfCamera, "which window each camera looks through, as 1,1,2,2; equal numbers share "
+        "one pane (default: each has its own)").excludes(shared);
+    parser.beginGroup("How well known");
+    o.given.std.addTo(parser);
+    o.given.places.addTo(parser);
+    parser.beginGroup("Limits");
     parser.add("--max-rms", o.limits.rms, "limit: RMS over all corners, px").check(moreThanZero());
     parser.add("--max-normal-std", o.limits.normalStdDeg, "limit: uncertainty of the normal (larger principal one), "
         "degrees").check(moreThanZero());
@@ -181,14 +185,25 @@ Options parseOptions(Command& command)
         "3-D) of the worst point of the image at z = RANGE from camera 1").oneAtATime();
     parser.addNegation("--no-cross-validation", o.crossValidation,
         "do not calibrate again on parts of the views");
-    parser.addNegation("--no-robust", o.robust, "use all points as they are; by default wrong points and "
-        "images (dirt, wrong detections, a board that moved within its pair) are left out, and named");
+    parser.beginGroup("Output");
+    parser.add("--out", o.out, "the calibration to write (.yml, .xml, .json)").required();
+    parser.add("--summary", o.summary, "JSON file with everything that the table and the report say");
+    parser.add("--report", o.report, "HTML page to assess the calibration by, and to keep (needs gnuplot)");
+    parser.add("--pinhole-out", o.pinholeOut, "also write the rig that cv::calibrateCamera and cv::stereoCalibrate make of "
+        "the images through the window, to compare with (refract_measure --compare-with)");
     parser.add("--unit", o.given.unit, "unit of --square and all lengths").check(isMember(unitNames()))
         .captureDefault();
     parser.add("--serial", o.label.serial, "serial number of the window, carried into all outputs");
     parser.add("--note", notes, "repeatable: KEY=TEXT, carried into all outputs").oneAtATime();
     parser.addFlag("--verbose", o.verbose, "print all tables, in place of ten lines").excludes(parser.get("--quiet"));
+    parser.beginGroup("Watch");
+    o.images.watch.addTo(parser);
+    parser.get("--view-pattern").excludes(parser.get("--watch"));
+    parser.add("--watch-gain", o.images.watchGain, "end when the best next pair would take off less than so many percent of the "
+        "calibration's part of a point's error").needs(parser.get("--watch")).check(moreThanZero());
+    parser.listFirst({"--size", "--square", "--direct", "--glass", "--thickness", "--index", "--out"});
     command.parse();
+    requireCountOfCameras(parser, o);
     for (const std::string& text : maxErrors)
         o.limits.errors.push_back(parseErrorLimit(text));
     for (const std::string& text : notes)
@@ -204,10 +219,6 @@ Options parseOptions(Command& command)
         && std::all_of(o.camera.begin(), o.camera.begin() + o.images.sources.cameraCount(), isGiven))
         throw Failure("--lens=" + o.lens + " is for a lens that the images determine; these are those of --camera: leave one out");
     o.images.sources.channel = channelOf(o.channel);
-    for (int c = 0; c < o.images.sources.cameraCount(); c++)
-        if (o.images.sources.glass[c].empty())
-            throw Failure(format("--glass%d is given, but no --glass%d: number the cameras 1, 2, 3, ... without a gap",
-                                 o.images.sources.cameraCount(), c + 1));
     return o;
 }
 

@@ -7,8 +7,8 @@ a board, or of any scene.
 
   refract_check calib.yml --size=6x5 --square=39 --direct=new/direct.png --glass=new/glass.png
   refract_check calib.yml --size=6x5 --square=39 --glass='new/*.png'                          no image without the window
-  refract_check calib.yml ... --direct='d1/*' --glass='g1/*' --direct2='d2/*' --glass2='g2/*'      a stereo rig
-  refract_check calib.yml --scene='left/*.png' --scene2='right/*.png' --depth=450,1150                   the same without a board
+  refract_check calib.yml ... --direct='d1/*' --glass='g1/*' --direct='d2/*' --glass='g2/*'      a stereo rig
+  refract_check calib.yml --scene='left/*.png' --scene='right/*.png' --depth=450,1150                   the same without a board
 
 One image each of --direct and --glass are a pair; among several, those with the same name. The target must not have moved
 between them, not even by a tenth of a pixel: in air, such a shift looks like a tilt of the window (--placement-std).
@@ -19,12 +19,12 @@ The noise comes from the calibration's residuals, the calibration's own error fr
 A new pane is wedge-shaped in another way than the old one, which looks like a tilt: with --new-pane, that is part of the +-.
 If nothing changed, it says that something did with the probability --false-alarm.
 
---scene, --scene2, ... are images, quoted globs or videos of all cameras, in which refract_match finds points; --depth is z of the scene in
-the frame of camera 1. No scene shows a turn of the whole rig, or another scale; in air it hardly shows a window's tilt.
+--scene, once for each camera, are images, quoted globs or videos, in which refract_match finds points; --depth is z of the scene in the
+frame of camera 1. No scene shows a turn of the whole rig, or another scale; in air it hardly shows a window's tilt.
 
   refract_check calib.yml ... --history=rig7.json              every month: keeps this check, and draws the control charts of all
 
-The charts (rig7.html, or --history-page) show drifts that no single check does: an EWMA of each parameter and T^2 of all, whose limits
+The charts (rig7.html, or --report) show drifts that no single check does: an EWMA of each parameter and T^2 of all, whose limits
 take into account that the calibration's own error is the same in all checks. --false-alarm (then 1/370) is for all charts and the
 check together. The images of each check must be new ones (one that was stored anew is known by where it shows the target), and the
 calibration the same. An edited or deleted record is told. Two checks at once wait for each other.
@@ -136,7 +136,7 @@ int refract_check_main(int argc, char** argv)
         std::vector<std::string> inputs = options.inputs();
         inputs.push_back(command.settings());
         checkOutputs({{"--summary", options.summary, options.hasHistory() ? OUTPUT_SHARED : OUTPUT_TEXT},
-                      {"--history", options.history, OUTPUT_SHARED}, {"--history-page", options.pageFile(), OUTPUT_SHARED}}, inputs);
+                      {"--history", options.history, OUTPUT_SHARED}, {"--report", options.pageFile(), OUTPUT_SHARED}}, inputs);
         std::unique_ptr<KeptCheck> kept = keptCheck(options, asCalibrated, command);
         CheckInput input = inputOf(options, calibration);
         const CheckImages images = newImages(options, calibration, command);

@@ -18,16 +18,16 @@
 
 static const char MANUAL[] = R"(Tells other programs of cameras behind windows: those that know none as well as that can be done.
 
-  refract_export calib.yml --to=opencv --range=400,1200 --out=central.yml
-  refract_export calib.yml --to=mrcal --range=400,1200 --out-dir=DIR       camera1.cameramodel ...
-  refract_export calib.yml --to=ros --range=400,1200 --out-dir=DIR         camera1.yaml ... (sensor_msgs/CameraInfo)
-  refract_export calib.yml --to=colmap --range=400,1200 [--points=points.csv] --out-dir=DIR
+  refract_export calib.yml --to=opencv --depth=400,1200 --out=central.yml
+  refract_export calib.yml --to=mrcal --depth=400,1200 --out-dir=DIR       camera1.cameramodel ...
+  refract_export calib.yml --to=ros --depth=400,1200 --out-dir=DIR         camera1.yaml ... (sensor_msgs/CameraInfo)
+  refract_export calib.yml --to=colmap --depth=400,1200 [--points=points.csv] --out-dir=DIR
   refract_export calib.yml --to=calibmar --out-dir=DIR                     camera1.yaml ..., with the windows: exact
   refract_export calib.yml --to=colmap-underwater [--points=points.csv] --out-dir=DIR      the model, with the windows: exact
   refract_export calib.yml --to=openptv --out-dir=DIR                      cam1.tif.ori, cam1.tif.addpar ..., ptv.par: exact
 
 No camera without a window sees what one behind a window sees, but for one depth. What is written is the central camera (place,
-direction, lens) that comes nearest for scenes between the two depths z of --range, in the frame of each camera and the unit of
+direction, lens) that comes nearest for scenes between the two depths z of --depth, in the frame of each camera and the unit of
 calib.yml. How far off it is stands in the files and in the table: in pixels, and as a length at the point. Exit code 2 if a
 camera's largest error is above --max-error pixels: give a smaller range, or measure with refract_measure, which is exact.
 
@@ -46,7 +46,7 @@ namespace fs = std::filesystem;
 
 struct Options
 {
-    std::string calibration, target, range, out, folder, points, extension;
+    std::string calibration, target, depth, out, folder, points, extension;
     int coefficients = -1;
     double maxError = 0;        // px; 0: none
 };
@@ -56,7 +56,8 @@ void addOptions(OptionParser& parser, Options& options)
     parser.add("calib.yml", options.calibration, "what refract_calib wrote, of any number of cameras").required();
     parser.add("--to", options.target, "whom to tell").required()
         .check(isMember({"opencv", "mrcal", "colmap", "ros", "calibmar", "colmap-underwater", "openptv"}));
-    parser.add("--range", options.range, "NEAR,FAR: z of the scene in the frame of each camera (not for those that know windows)");
+    parser.add("--depth", options.depth, "NEAR,FAR: z of the scene in the frame of each camera (not for those that know windows)");
+    parser.addFormerName("--range", "--depth");
     parser.add("--out", options.out, "file to write, .yml, .xml or .json (--to=opencv)");
     parser.add("--out-dir", options.folder, "folder to write to, made if it is not there (the others)");
     parser.add("--points", options.points, "points.csv of refract_measure (--to=colmap and colmap-underwater)");
@@ -82,9 +83,9 @@ void checkCombination(const Options& options, const std::string& settings)
                                                          : " writes several files: give --out-dir=DIR, and no --out"));
     if (!options.points.empty() && options.target.compare(0, 6, "colmap") != 0)
         throw Failure("--points: only COLMAP's model has points; give --to=colmap, or leave it out");
-    if (options.range.empty() != isExact(options))
-        throw Failure("--to=" + options.target + (isExact(options) ? " is exact at all depths: leave --range out"
-                                                                   : " is good for a range of depths: give --range=NEAR,FAR"));
+    if (options.depth.empty() != isExact(options))
+        throw Failure("--to=" + options.target + (isExact(options) ? " is exact at all depths: leave --depth out"
+                                                                   : " is good for a range of depths: give --depth=NEAR,FAR"));
     if (isExact(options) && (options.coefficients >= 0 || options.maxError > 0))
         throw Failure("--to=" + options.target + " is exact: leave --coefficients and --max-error out");
     if (isFile)
@@ -228,7 +229,7 @@ int refract_export_main(int argc, char** argv)
             printWritten(writeFolder(options, command.settings(), files), command);
             return DONE;
         }
-        const cv::Vec2d range = parseFiniteDepthRange(options.range, "--range");
+        const cv::Vec2d range = parseFiniteDepthRange(options.depth, "--depth");
         const CentralRig rig = centralRigOf(options, range, command);
         const std::vector<std::string> files = write(options, command.settings(), rig);
         if (!command.quiet())

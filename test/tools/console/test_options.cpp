@@ -4,7 +4,9 @@
 // Options of a command line, each kind of value and each kind of check.
 #include "console/options.hpp"
 #include "console/failure.hpp"
+#include "temporary_folder.hpp"
 #include <catch2/catch.hpp>
+#include <fstream>
 
 using namespace tools;
 
@@ -12,7 +14,7 @@ namespace {
 
 struct Values
 {
-    std::string file, pattern = "dots", alone, two;
+    std::string file, pattern = "dots", alone, two, left[3], right[3];
     double length = 2.5, share = 0.;
     int count = 1;
     std::vector<std::string> images, notes, free, folders;
@@ -34,12 +36,19 @@ Values parse(const std::vector<std::string>& arguments)
     const Option quick = parser.addFlag("--quick", v.quick, "a flag");
     parser.addNegation("--no-robust", v.robust, "the opposite");
     parser.add("--alone", v.alone, "not with --quick").excludes(quick);
-    parser.add("--two", v.two, "only with --quick").needs(quick).hide();
+    parser.add("--two", v.two, "only with --quick").needs(quick);
+    parser.beginGroup("Images");
+    parser.addForEach("--left", v.left, 3, "once for each camera", "--right");
+    parser.addForEach("--right", v.right, 3, "the same");
+    parser.beginGroup("Watch");
     parser.addCallback("--watch", [&v](const std::vector<std::string>& values) {
         v.isWatching = true;
         v.folders = values;
     }, "with a value or without").mayBeAlone().typeName("[FOLDER]");
+    parser.addFormerName("--range", "--length");
+    parser.listFirst({"--length", "--left"});
     parser.addVersion("tool 1");
+    parser.addSettingsFile("settings");
     parser.parse(arguments);
     return v;
 }
@@ -88,7 +97,11 @@ TEST_CASE("What is wrong with a command line is one sentence", "[options]")
         {{"a", "--length=0"}, "--length: give a number more than 0, not 0"}, {{"a", "--length=nan"}, "more than 0, not nan"},
         {{"a", "--share=1.1"}, "from 0 to 1"}, {{"a", "--count=4"}, "--count"}, {{"a", "--count=1.5"}, "--count"},
         {{"a", "--quick", "--alone=1"}, "excludes"}, {{"a", "--two=2"}, "requires --quick"}, {{"a", "--length"}, "--length"},
-        {{"--lenght=1"}, "there is no option --lenght=1"}};
+        {{"--lenght=1"}, "there is no option --lenght=1"}, {{"a", "--left4=b"}, "there is no option --left4"},
+        {{"a", "--left1=b"}, "there is no option --left1"}, {{"a", "--left2"}, "--left2: 1 required TEXT missing"},
+        {{"a", "--left", "--quick"}, "--left: 1 required TEXT missing"}, {{"a", "--left2=b"}, "--left2 requires --right2"},
+        {{"a", "--left=b", "--left=c", "--left2=d"}, "--left2 is given twice"},
+        {{"a", "--left=b", "--left=c", "--left=d", "--left=e"}, "--left is given more than 3 times"}};
     for (const auto& c : wrong)
     {
         CAPTURE(c.mentions);
@@ -96,7 +109,45 @@ TEST_CASE("What is wrong with a command line is one sentence", "[options]")
     }
 }
 
-TEST_CASE("Help lists the options, except for hidden ones", "[options]")
+TEST_CASE("An option for each camera is said once for each, or with a camera's number", "[options]")
+{
+    using Said = std::vector<std::string>;
+    const auto left = [](const Said& arguments) {
+        const Values v = parse(arguments);
+        return Said(v.left, v.left + 3);
+    };
+    const Said right = {"a", "--right=x", "--right2=y", "--right3=z"};
+    const auto with = [&](Said more) {
+        more.insert(more.begin(), right.begin(), right.end());
+        return more;
+    };
+    CHECK(left({"a"}) == Said{"", "", ""});
+    CHECK(left(with({"--left=b", "--left", "c", "--left=d=e"})) == Said{"b", "c", "d=e"});
+    CHECK(left(with({"--left2", "c", "--left=b"})) == Said{"b", "c", ""});
+    CHECK(left(with({"--left3=d"})) == Said{"", "", "d"});
+    CHECK(left(with({"--left3=-d", "--left=[b]", "--", "--left=e"})) == Said{"[b]", "", "-d"});     // behind -- are no options
+    // Of a file of settings what the command line does not say.
+    const TemporaryFolder folder;
+    std::ofstream(folder / "run.toml") << "left = [\"p\", \"q\"]\nleft3 = \"r\"\nright = [\"x\", \"y\", \"z\"]\n";
+    const std::string settings = "--config=" + (folder / "run.toml");
+    CHECK(left({"a", settings}) == Said{"p", "q", "r"});
+    CHECK(left({"a", settings, "--left2=c"}) == Said{"p", "c", "r"});
+    CHECK(left({"a", settings, "--left=b", "--left=c"}) == Said{"b", "c", "r"});
+    std::ofstream(folder / "run.toml") << "left = [\"p\", \"q\"]\nleft2 = \"r\"\n";
+    CHECK_THROWS_WITH(left({"a", settings}), Catch::Contains("--left2 is given twice"));
+}
+
+TEST_CASE("An option is known by its former name, too", "[options]")
+{
+    CHECK(parse({"a", "--range=3"}).length == 3.);
+    CHECK(parse({"a", "--range", "4"}).length == 4.);
+    const TemporaryFolder folder;
+    std::ofstream(folder / "run.toml") << "range = 5\n";
+    CHECK(parse({"a", "--config=" + (folder / "run.toml")}).length == 5.);
+    CHECK(answerTo("--help").find("--range") == std::string::npos);
+}
+
+TEST_CASE("Help lists the options by groups: first what most need, last what all tools have", "[options]")
 {
     CHECK(answerTo("--version") == "tool 1\n");
     const std::string help = answerTo("--help");
@@ -106,5 +157,12 @@ TEST_CASE("Help lists the options, except for hidden ones", "[options]")
         CAPTURE(help, part);
         CHECK(help.find(part) != std::string::npos);
     }
-    CHECK(help.find("--two") == std::string::npos);
+    size_t at = 0;
+    for (const char* part : {"\nMost used:\n  --length", "\n  --left TEXT ...", "\nImages:\n  --right", "\nWatch:\n  --watch",
+                             "\nOptions:\n"})
+    {
+        CAPTURE(help, part, at);
+        at = help.find(part, at);
+        REQUIRE(at != std::string::npos);
+    }
 }

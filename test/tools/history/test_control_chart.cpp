@@ -311,23 +311,23 @@ TEST_CASE("An edited or deleted check is told, at each reading", "[history]")
 
 TEST_CASE("A time to come is refused", "[history]")
 {
-    CHECK_THROWS_AS(requirePast("2999-01-01", "--time"), Failure);
-    CHECK_NOTHROW(requirePast(timeOfNow().substr(0, 10), "--time"));
+    CHECK_THROWS_AS(requirePast("2999-01-01", "--date"), Failure);
+    CHECK_NOTHROW(requirePast(timeOfNow().substr(0, 10), "--date"));
     CHECK_THROWS_AS(requireDate("2024-01-01T00:00", "--date"), Failure);
 }
 
 TEST_CASE("Times are read as ISO 8601 writes them", "[history]")
 {
-    CHECK(parseTime("2026-11-26", "--time") == "2026-11-26T00:00:00Z");
-    CHECK(parseTime("2026-11-26T08:30", "--time") == "2026-11-26T08:30:00Z");
-    CHECK(parseTime("2026-11-26T08:30:01Z", "--time") == "2026-11-26T08:30:01Z");
-    CHECK(parseTime("2026-11-26T00:30:00+01:00", "--time") == "2026-11-25T23:30:00Z");
-    CHECK(parseTime("2026-11-26T08:30-05:30", "--time") == "2026-11-26T14:00:00Z");
+    CHECK(parseTime("2026-11-26", "--date") == "2026-11-26T00:00:00Z");
+    CHECK(parseTime("2026-11-26T08:30", "--date") == "2026-11-26T08:30:00Z");
+    CHECK(parseTime("2026-11-26T08:30:01Z", "--date") == "2026-11-26T08:30:01Z");
+    CHECK(parseTime("2026-11-26T00:30:00+01:00", "--date") == "2026-11-25T23:30:00Z");
+    CHECK(parseTime("2026-11-26T08:30-05:30", "--date") == "2026-11-26T14:00:00Z");
     for (const std::string text : {"", "yesterday", "2026-02-30", "2026-13-01", "2026-11-26T25:00", "2026-11-26 08:30",
                                    "2026-11-26T08:30:00ZZ", "26.11.2026", "2026-11-26T08"})
     {
         INFO(text);
-        CHECK_THROWS_AS(parseTime(text, "--time"), Failure);
+        CHECK_THROWS_AS(parseTime(text, "--date"), Failure);
     }
 }
 

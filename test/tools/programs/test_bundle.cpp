@@ -174,7 +174,7 @@ TEST_CASE("refract_measure finds the points that refract_bundle wrote", "[tools]
         compared += i/2 % 2;
     }
     CHECK(compared > 20);
-    for (const char* tool : { "refract_export %s --to=opencv --range=600,800 --out=%s", "refract_bundle %s --free=none --points=" })
+    for (const char* tool : { "refract_export %s --to=opencv --depth=600,800 --out=%s", "refract_bundle %s --free=none --points=" })
     {
         const bool isExport = mentions(tool, "export");
         const ToolResult again = runTool(isExport ? format(tool, (f / "calib.yml").c_str(), (f / "central.yml").c_str())

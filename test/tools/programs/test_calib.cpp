@@ -491,7 +491,7 @@ TEST_CASE("refract_calib says that the images contradict a wrong thickness, and 
     CHECK_THAT(within.out, Catch::Matches("[^]*boards moved between direct and glass +0\\.01 mm [^]*"));
     // Whoever uses what came of it is told.
     runTool(inputs(f, " --thickness=26 --index=1.5437 --no-robust"));
-    const std::string use = "refract_export " + f / "calib.yml" + " --to=opencv --range=400,900 --out=" + f / "central.yml";
+    const std::string use = "refract_export " + f / "calib.yml" + " --to=opencv --depth=400,900 --out=" + f / "central.yml";
     const ToolResult user = runTool(use);
     INFO(user.out << user.err);
     CHECK(user.code == 0);

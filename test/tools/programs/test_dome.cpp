@@ -305,7 +305,7 @@ TEST_CASE("Tools that only use a calibration take a dome", "[tools][dome]")
     const std::string second = rig.out("img/measure2/test1.png");
     for (const std::string& command : {"refract_undistort " + truth + " " + first + " --depth=500 --out-dir=" + rig.out("undistorted"),
                                        "refract_epilines " + truth + " " + first + " " + second + BOARD + " --out=" + rig.out("lines.png"),
-                                       "refract_export " + truth + " --to=colmap --range=380,650 --out-dir=" + rig.out("model")})
+                                       "refract_export " + truth + " --to=colmap --depth=380,650 --out-dir=" + rig.out("model")})
     {
         const ToolResult r = runTool(command);
         INFO(command << "\n" << r.out << r.err);

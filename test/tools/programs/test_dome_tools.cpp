@@ -25,7 +25,7 @@ TEST_CASE("A rig in domes is accepted by lengths, and its checks are charted", "
     CHECK(!mentions(accepted.out, "normal"));
 
     const std::string check = "refract_check " + rig.out("calib.yml") + BOARD + " --history=" + rig.out("h.json") + " --summary="
-        + rig.out("s.json") + " --time=2024-01-01T00:00:00Z";
+        + rig.out("s.json") + " --date=2024-01-01T00:00:00Z";
     const ToolResult checked = runTool(check + " --direct=" + rig.set("bare1") + " --direct2=" + rig.set("bare2") + " --glass="
                                        + rig.set("measure1") + " --glass2=" + rig.set("measure2"));
     INFO(checked.out << checked.err);

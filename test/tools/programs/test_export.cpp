@@ -20,7 +20,7 @@ using namespace cv::refract;
 
 namespace {
 
-const std::string CALIB = paths::bundled() + "/stereo/truth.yml", RANGE = " --range=550,900";
+const std::string CALIB = paths::bundled() + "/stereo/truth.yml", RANGE = " --depth=550,900";
 
 //! The true rig, and points that both cameras see.
 struct Rig
@@ -276,10 +276,10 @@ TEST_CASE("refract_export says what it cannot do, and leaves nothing behind", "[
         CHECK(result.err.find(why) != std::string::npos);
         CHECK(folder.count() == 0);
     };
-    refused(" --to=opencv --range=900,550" + out, "--range");
-    refused(" --to=opencv --range=550" + out, "--range");
-    refused(" --to=opencv --range=1,40" + out, "beyond its window");
-    refused(" --to=opencv --range=1e-9,1e9" + out, "beyond its window");
+    refused(" --to=opencv --depth=900,550" + out, "--depth");
+    refused(" --to=opencv --depth=550" + out, "--depth");
+    refused(" --to=opencv --depth=1,40" + out, "beyond its window");
+    refused(" --to=opencv --depth=1e-9,1e9" + out, "beyond its window");
     refused(" --to=opencv" + RANGE, "--out=FILE");
     refused(" --to=mrcal" + RANGE + out, "--out-dir=DIR");
     refused(" --to=mrcal --coefficients=14" + RANGE + " --out-dir=" + (folder / "m"), "--coefficients=14");

@@ -52,7 +52,7 @@ TEST_CASE("refract_check --history keeps checks, finds a drift and refuses what 
     writeMonth(march, 8003, 0.3);
     for (const auto* month : {&january, &february})
     {
-        const std::string time = month == &january ? " --time=2024-01-15" : " --time=2024-02-15T08:00:00+01:00";
+        const std::string time = month == &january ? " --date=2024-01-15" : " --date=2024-02-15T08:00:00+01:00";
         const ToolResult r = runTool(check(calibration, *month, history + time + " --serial=W-0042"));
         INFO(r.out << r.err);
         CHECK(r.code == 0);
@@ -74,19 +74,19 @@ TEST_CASE("refract_check --history keeps checks, finds a drift and refuses what 
     for (const char* name : {"direct1.vnl", "glass1.vnl", "direct2.vnl", "glass2.vnl"})
         writeFile(again/name, readFile(february/name) + "# new\n");
     const struct { std::string command, says; } cases[] = {
-        {check(calibration, january, history + " --time=2024-03-15"), "already"},
-        {check(calibration, march, history + " --time=2024-01-01"), "backwards"},
-        {check(calibration, march, history + " --time=2999-01-01"), "in the future"},
-        {check(calibration, again, history + " --time=2024-03-15"), "stored anew"},
-        {check(calibration, folder, history + " --time=2024-03-15"), "' of camera 1 calibrated"},
-        {check(calibration, march, history + " --time=15.3.2026"), "--time=15.3.2026"},
+        {check(calibration, january, history + " --date=2024-03-15"), "already"},
+        {check(calibration, march, history + " --date=2024-01-01"), "backwards"},
+        {check(calibration, march, history + " --date=2999-01-01"), "in the future"},
+        {check(calibration, again, history + " --date=2024-03-15"), "stored anew"},
+        {check(calibration, folder, history + " --date=2024-03-15"), "' of camera 1 calibrated"},
+        {check(calibration, march, history + " --date=15.3.2026"), "--date=15.3.2026"},
         {check(calibration, march, history + " --serial=W-0043"), "W-0042"},
         {check(third, march, history), "another rig"},
         {check(another, march, history), "another calibration"},
         {check(calibration, march, " --history=" + folder / "none.json"), "no history"},
         {check(calibration, march, history + " --new-pane"), "--new-pane"},
-        {check(calibration, march, history + "x.json --history-page=" + folder / "rig.jsonx.json"), "rig.jsonx.json"},
-        {check(calibration, march, " --time=2024-03-15"), "--history"},
+        {check(calibration, march, history + "x.json --report=" + folder / "rig.jsonx.json"), "rig.jsonx.json"},
+        {check(calibration, march, " --date=2024-03-15"), "--history"},
     };
     for (const auto& c : cases)
     {
@@ -103,13 +103,13 @@ TEST_CASE("refract_check --history keeps checks, finds a drift and refuses what 
     writeMonth(april, 8004, 0.);
     writeMonth(may, 8005, 0.);
     std::filesystem::copy_file(folder / "rig.json", folder / "two.json");
-    std::thread other1([&] { runTool(check(calibration, april, " --history=" + folder / "two.json --time=2024-05-15")); });
-    runTool(check(calibration, may, " --history=" + folder / "two.json --time=2024-05-15"));
+    std::thread other1([&] { runTool(check(calibration, april, " --history=" + folder / "two.json --date=2024-05-15")); });
+    runTool(check(calibration, may, " --history=" + folder / "two.json --date=2024-05-15"));
     other1.join();
     CHECK(nlohmann::json::parse(readFile(folder / "two.json"))["checks"].size() == 4);
     CHECK_FALSE(std::filesystem::exists(folder / "two.json.lock"));
 
-    const ToolResult moved = runTool(check(calibration, march, history + " --time=2024-03-15 --summary=" + folder / "check.json"));
+    const ToolResult moved = runTool(check(calibration, march, history + " --date=2024-03-15 --summary=" + folder / "check.json"));
     INFO(moved.out << moved.err);
     CHECK(moved.code == 2);
     CHECK(mentions(moved.out, "window of camera 2: tilt has changed by"));

@@ -225,7 +225,7 @@ TEST_CASE("Checks by a scene have a history: the second is another, and a turn t
             write(f / "l.png", left);
             write(f / "r.png", right);
             const ToolResult result = check(calibration, f / "l.png", f / "r.png",
-                                            EXACT + history + cv::format(" --time=2025-%02d-01", month));
+                                            EXACT + history + cv::format(" --date=2025-%02d-01", month));
             INFO(result.err + result.out);
             CHECK(result.code == (calibration == CALIB ? 0 : 2));
             CHECK(mentions(result.out, cv::format("History of %d check", month)));
@@ -233,7 +233,7 @@ TEST_CASE("Checks by a scene have a history: the second is another, and a turn t
                 CHECK(mentions(result.out, "R of camera 2"));
             if (month == 2)
             {
-                const ToolResult again = check(calibration, f / "l.png", f / "r.png", EXACT + history + " --time=2025-04-01");
+                const ToolResult again = check(calibration, f / "l.png", f / "r.png", EXACT + history + " --date=2025-04-01");
                 INFO(again.err + again.out);
                 CHECK(again.code == 1);
             }

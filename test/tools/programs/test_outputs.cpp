@@ -187,7 +187,7 @@ TEST_CASE("A disk that is full is told, and what was there stays", "[tools][outp
     const std::string commands[] = {
         "refract_calib" + TARGET + " --thickness=20 --index=1.5437 --direct='" + STEREO + "/direct1/*' --glass='" + STEREO
             + "/glass1/*' --no-cross-validation --quiet --out=",
-        "refract_export " + in.calib + " --to=opencv --range=400,800 --out=",
+        "refract_export " + in.calib + " --to=opencv --depth=400,800 --out=",
         "refract_epilines " + in.calib + " " + in.left + " " + in.right + TARGET + " --quiet --out=",
         "refract_board" + TARGET + " --out="};
     for (const std::string& command : commands)
@@ -253,7 +253,7 @@ TEST_CASE("JSON is what others read too", "[tools][outputs]")
     for (const std::string& command : {"refract_calib" + TARGET + " --thickness=20 --index=1.5437 --direct='" + STEREO
                                           + "/direct1/*' --glass='" + STEREO + "/glass1/*' --note=by='O\"Neill' "
                                           "--no-cross-validation --quiet --out=",
-                                      "refract_export " + in.calib + " --to=opencv --range=400,800 --out="})
+                                      "refract_export " + in.calib + " --to=opencv --depth=400,800 --out="})
     {
         const std::string out = in.folder / "c.json";
         const ToolResult result = runTool(command + out);

@@ -113,8 +113,8 @@ TEST_CASE("A settings file that does not fit is refused with one sentence, and n
         "refract_check " + calib + target + " --glass=" + left + " --summary=" + file + " --config=" + file,
         "refract_epilines " + calib + " " + left + " " + right + target + " --out=" + (folder / "run.png") + " --config="
             + (folder / "run.png"),
-        "refract_export " + calib + " --to=opencv --range=400,800 --out=" + file + " --config=" + file,
-        "refract_export " + calib + " --to=colmap --range=400,800 --out-dir=" + d + " --config=" + d + "/cameras.txt",
+        "refract_export " + calib + " --to=opencv --depth=400,800 --out=" + file + " --config=" + file,
+        "refract_export " + calib + " --to=colmap --depth=400,800 --out-dir=" + d + " --config=" + d + "/cameras.txt",
         "refract_laser " + calib + " " + left + target + " --sheet-out=" + file + " --config=" + file,
         "refract_measure " + calib + " " + left + " " + right + target + " --pixel-sigma=0.01 --out=" + file + " --config=" + file,
         "refract_simulate " + rig + " --out-dir=" + d + " --config=" + d + "/truth.yml",

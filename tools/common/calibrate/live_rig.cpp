@@ -317,7 +317,7 @@ void WatchOptions::addTo(OptionParser& parser)
         for (const std::string& value : values)
             if (!value.empty() && value != "true")          // --watch alone, and in a settings file
                 folders.push_back(value);
-    }, "wait while cameras fill the folders of --direct, --glass, --direct2, ..., or only this one (repeatable); say of each image whether "
+    }, "wait while cameras fill the folders of all --direct and --glass, or only this one (repeatable); say of each image whether "
        "the board was found, how sharp it is and what the next should show, then calibrate").mayBeAlone().typeName("[FOLDER]");
     parser.add("--watch-count", count, "end with so many images that show the board").needs(watch).check(isCount());
     parser.add("--watch-pairs", pairs, "end with so many names of which all images have come and show the board").needs(watch)

@@ -18,19 +18,8 @@ namespace tools {
 
 void RigSources::addTo(OptionParser& parser, const std::string& aboutGlass, const std::string& aboutDirect)
 {
-    for (int c = 0; c < MAX_CAMERAS; c++)
-    {
-        const std::string suffix = cameraSuffix(c), same = "the same of camera " + suffix;
-        Option ofDirect = parser.add("--direct" + suffix, direct[c], c ? same : aboutDirect);
-        Option ofGlass = parser.add("--glass" + suffix, glass[c], c ? same : aboutGlass);
-        if (c)
-            ofDirect.needs(ofGlass);
-        else
-            ofGlass.required();
-        for (Option option : {ofDirect, ofGlass})
-            if (c > 1)
-                option.hide();          // told in the manual: help of one screen
-    }
+    parser.addForEach("--direct", direct.data(), MAX_CAMERAS, aboutDirect, "--glass");
+    parser.addForEach("--glass", glass.data(), MAX_CAMERAS, aboutGlass).required();
     addViewPattern(parser, viewPattern);
 }
 

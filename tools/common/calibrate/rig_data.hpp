@@ -35,7 +35,7 @@ struct RigSources
     std::string viewPattern;                    //!< what names say of the moment, see momentOf(); empty: what takeOffCameras() finds
     std::string yFrom;                          //!< of tables of points that leave it open, see PixelOrigin
 
-    //! --direct, --glass, --direct2, --glass2, ... --glass16, of which the first is required; --view-pattern.
+    //! --direct and --glass, which is required, for each camera; --view-pattern.
     void addTo(OptionParser& parser, const std::string& aboutGlass, const std::string& aboutDirect);
     std::vector<std::string> all() const;       //!< that are given
     int cameraCount() const;                    //!< the last that has any

@@ -58,14 +58,10 @@ void CheckOptions::addTo(OptionParser& parser)
         .check(isMember(unitNames()));
     target.addDotsTo(parser);
     addYFrom(parser, images.yFrom).needs(parser.get("--target"));
-    images.addTo(parser, "new images through the window: glob, corners.vnl or points.csv", "new images without the window");
-    for (int c = 0; c < MAX_CAMERAS; c++)
-    {
-        Option option = parser.add("--scene" + cameraSuffix(c), scene[c], c ? "the same of camera " + cameraSuffix(c)
-                                   : "new images of any scene, in place of those of a target: image, glob or video");
-        if (c > 1)
-            option.hide();
-    }
+    images.addTo(parser, "new images through the window, once for each camera: glob, corners.vnl or points.csv", "new images "
+        "without the window: the same");
+    parser.addForEach("--scene", scene.data(), MAX_CAMERAS, "new images of any scene, in place of those of a target, once for each "
+        "camera: image, glob or video");
     parser.add("--depth", depth, "with --scene: NEAR,FAR, z in the frame of camera 1 (default: the calibrated volume, and half as far "
         "again)").needs(parser.get("--scene"));
     for (const char* ofTarget : {"--glass", "--size", "--square"})      // requireOneKind asks for them
@@ -89,9 +85,11 @@ void CheckOptions::addTo(OptionParser& parser)
     parser.add("--summary", summary, "JSON file with the result");
     Option ofHistory = parser.add("--history", history, "JSON file that keeps all checks of this calibration; begun if it is not "
         "there").excludes(ofPane);
-    parser.add("--history-page", page, "HTML page to write, with the control charts (default: --history with .html; needs gnuplot)")
+    parser.add("--report", page, "HTML page to write, with the control charts (default: --history with .html; needs gnuplot)")
         .needs(ofHistory);
-    parser.add("--time", time, "when the images were taken, as 2026-11-26T08:30:00Z (default: now)").needs(ofHistory);
+    parser.add("--date", date, "when the images were taken, as 2026-11-26 or 2026-11-26T08:30:00Z (default: now)").needs(ofHistory);
+    parser.addFormerName("--history-page", "--report");
+    parser.addFormerName("--time", "--date");
     parser.addFlag("--fixed-target", fixedTarget, "the target stands where it stood at the checks before: its images may look alike")
         .needs(ofHistory);
     parser.add("--serial", serial, "serial number of the window that stands on it: must be that of calib.yml");

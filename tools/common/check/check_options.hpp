@@ -27,7 +27,7 @@ struct CheckOptions
     double wedgeMinutes = 1.;
     double placement = -1.;         //!< negative: that of the calibration
     ConditionsOptions conditions;
-    std::string history, page, time, serial;
+    std::string history, page, date, serial;
 
     bool hasHistory() const { return !history.empty(); }
     bool isOfScene() const { return !scene[0].empty(); }

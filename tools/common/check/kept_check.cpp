@@ -42,9 +42,9 @@ KeptCheck::KeptCheck(const CheckOptions& options, const Calibration& calibration
     Plot::checkAvailable("--history");
     requireSameRig(history_, options.history, calibration, options.calibration);
     covariance_ = toEigen(withWedges(checkInputOf(calibration, options.calibration, options.sigma)).covariance);
-    if (!options.time.empty())
-        requirePast(options.time, "--time");
-    time_ = options.time.empty() ? timeOfNow() : parseTime(options.time, "--time");
+    if (!options.date.empty())
+        requirePast(options.date, "--date");
+    time_ = options.date.empty() ? timeOfNow() : parseTime(options.date, "--date");
 }
 
 void KeptCheck::requireNewImages(const CheckImages& images)

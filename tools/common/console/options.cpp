@@ -36,6 +36,29 @@ std::string unknownOption(const CLI::App& app)
 
 } // namespace
 
+const char FIRST_GROUP[] = "Most used", LAST_GROUP[] = "Options";       // the latter by CLI11
+
+//! Groups in the order in which they began, but for what most commands need, and what all tools have.
+class Help : public CLI::Formatter
+{
+public:
+    std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode) const override
+    {
+        std::vector<std::string> groups = app->get_groups();
+        const auto rest = std::stable_partition(groups.begin(), groups.end(), [](const auto& group) { return group == FIRST_GROUP; });
+        std::stable_partition(rest, groups.end(), [](const auto& group) { return group != LAST_GROUP; });
+        std::string text = make_description(app) + make_usage(app, name) + make_positionals(app);
+        for (const std::string& group : groups)
+        {
+            const std::vector<const CLI::Option*> options = app->get_options([&](const CLI::Option* option) {
+                return option->nonpositional() && option->get_group() == group; });
+            if (!options.empty())
+                text += make_group(group, false, options);
+        }
+        return text + "\n";
+    }
+};
+
 //! What stands before the first '=' of a line, without blanks and quotes; empty if that is no name.
 static std::string nameOf(const std::string& line)
 {
@@ -117,12 +140,6 @@ Option& Option::excludes(const Option& other)
     return *this;
 }
 
-Option& Option::hide()
-{
-    option_->group("");
-    return *this;
-}
-
 Option& Option::delimiter(char between)
 {
     option_->delimiter(between);
@@ -153,14 +170,22 @@ size_t Option::count() const { return option_->count(); }
 class OptionParser::SettingsFile : public CLI::ConfigTOML
 {
 public:
-    explicit SettingsFile(const CLI::App& app) : app_(app) {}
+    SettingsFile(CLI::App& app, const OptionNames& names) : app_(app), names_(names) {}
 
     std::vector<CLI::ConfigItem> from_config(std::istream& in) const override
     {
         std::istringstream text(readSettings(in));      // CLI11 joins a setting that comes twice, as if it were a list
-        std::vector<CLI::ConfigItem> items = CLI::ConfigTOML::from_config(text);
-        for (CLI::ConfigItem& item : items)
+        std::vector<CLI::ConfigItem> items;
+        std::map<std::string, OptionNames::Said> saidOfEach;
+        for (CLI::ConfigItem& item : CLI::ConfigTOML::from_config(text))
         {
+            if (item.parents.empty())
+                item.name = names_.presentName("--" + item.name).substr(2);
+            const std::string ofEach = names_.nameOfEach("--" + item.fullname());
+            for (const std::string& value : ofEach.empty() ? std::vector<std::string>() : item.inputs)
+                saidOfEach[ofEach].push_back({"--" + item.fullname(), value});
+            if (!ofEach.empty())
+                continue;
             const CLI::Option& option = optionOf(item);
             item.name = item.fullname();        // that of calib.yml has a dot, which divides sections
             item.parents.clear();
@@ -168,7 +193,10 @@ public:
                 item.inputs = {CLI::detail::join(item.inputs, ",")};     // thickness = [20, 5] is --thickness=20,5
             if (option.empty())
                 noteArguments(option, item);
+            items.push_back(item);
         }
+        for (const auto& said : saidOfEach)
+            complete(said.first, names_.valuesOfEach(said.first, said.second));
         return items;
     }
 
@@ -191,6 +219,22 @@ private:
         return *option;
     }
 
+    //! Of the cameras of which the command line says nothing.
+    void complete(const std::string& name, const std::vector<std::string>& values) const
+    {
+        CLI::Option& option = *app_.get_option(name);
+        std::vector<std::string> all = option.results();
+        all.resize(std::max(all.size(), values.size()));
+        for (size_t at = 0; at < values.size(); at++)
+            if (all[at].empty() && !values[at].empty())
+            {
+                all[at] = values[at];
+                arguments_.push_back(numberedName(name, at) + "=" + values[at]);
+            }
+        option.clear();
+        option.add_result(all);
+    }
+
     //! So that the command line that goes into outputs says all.
     void noteArguments(const CLI::Option& option, const CLI::ConfigItem& item) const
     {
@@ -202,13 +246,15 @@ private:
                 arguments_.push_back("--" + item.name + (isFlag ? "" : "=" + value));
     }
 
-    const CLI::App& app_;
+    CLI::App& app_;
+    const OptionNames& names_;
     mutable std::vector<std::string> arguments_;        // CLI11 reads through a const interface
 };
 
 OptionParser::OptionParser(const std::string& about, const std::string& name)
     : name_(name), app_(std::make_unique<CLI::App>(about, name))
 {
+    app_->formatter(std::make_shared<Help>());
     app_->get_formatter()->column_width(34);
 }
 
@@ -240,6 +286,14 @@ Option OptionParser::addCallback(const std::string& name, const std::function<vo
     return Option(app_->add_option_function<std::vector<std::string>>(name, take, about));
 }
 
+Option OptionParser::addForEach(const std::string& name, std::string* values, size_t count, const std::string& about,
+                                const std::string& needed)
+{
+    names_.addForEach(name, values, count, needed);
+    return addCallback(name, [=](const std::vector<std::string>& said) { std::copy(said.begin(), said.end(), values); }, about)
+        .oneAtATime();
+}
+
 Option OptionParser::addFlag(const std::string& name, bool& flag, const std::string& about)
 {
     return Option(app_->add_flag(name, flag, about));
@@ -254,16 +308,37 @@ void OptionParser::addVersion(const std::string& text) { app_->set_version_flag(
 
 void OptionParser::addSettingsFile(const std::string& about)
 {
-    settingsFile_ = std::make_shared<SettingsFile>(*app_);
+    settingsFile_ = std::make_shared<SettingsFile>(*app_, names_);
     app_->config_formatter(settingsFile_);
     app_->set_config("--config", "", about)->type_name("FILE");
 }
 
+void OptionParser::addFormerName(const std::string& former, const std::string& name) { names_.addFormer(former, name); }
+
 Option OptionParser::get(const std::string& name) const { return Option(app_->get_option(name)); }
+
+void OptionParser::beginGroup(const std::string& heading) { app_->option_defaults()->group(heading); }
+
+void OptionParser::listFirst(const std::vector<std::string>& names)
+{
+    for (const std::string& name : names)
+        app_->get_option(name)->group(FIRST_GROUP);
+}
 
 void OptionParser::parse(const std::vector<std::string>& arguments)
 {
-    std::vector<std::string> reversed(arguments.rbegin(), arguments.rend());       // as CLI11 takes them
+    const std::string seeHelp = " (see " + name_ + " --help)";
+    const auto check = [&](const auto& names) {
+        try
+        {
+            return names();
+        }
+        catch (const Failure& e)
+        {
+            throw Failure(e.what() + seeHelp);
+        } };
+    std::vector<std::string> reversed = check([&] { return names_.inOrder(arguments); });       // as CLI11 takes them
+    std::reverse(reversed.begin(), reversed.end());
     try
     {
         app_->parse(reversed);
@@ -281,8 +356,9 @@ void OptionParser::parse(const std::vector<std::string>& arguments)
     catch (const CLI::ParseError& e)
     {
         const std::string unknown = unknownOption(*app_);       // which may be why something else is missing
-        throw Failure((unknown.empty() ? e.what() : unknown) + " (see " + name_ + " --help)");
+        throw Failure((unknown.empty() ? e.what() : unknown) + seeHelp);
     }
+    check([&] { names_.requireNeeded(); });
 }
 
 std::string OptionParser::settings() const

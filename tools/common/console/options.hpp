@@ -4,9 +4,9 @@
 #ifndef REFRACT_TOOLS_OPTIONS_HPP
 #define REFRACT_TOOLS_OPTIONS_HPP
 
+#include "console/option_names.hpp"
 #include <cstddef>
 #include <functional>
-#include <iosfwd>
 #include <memory>
 #include <string>
 #include <vector>
@@ -50,7 +50,6 @@ public:
     Option& captureDefault();                   //!< --help says the value that it has now
     Option& needs(const Option& other);
     Option& excludes(const Option& other);
-    Option& hide();                             //!< from --help
     Option& delimiter(char between);            //!< of values in one argument
     Option& oneAtATime();                       //!< of several values, each has the option's name before it
     Option& mayBeAlone();                       //!< no value, or one; may be said more than once
@@ -73,6 +72,11 @@ public:
     Option add(const std::string& name, double& value, const std::string& about);
     Option add(const std::string& name, int& value, const std::string& about);
     Option add(const std::string& name, std::vector<std::string>& values, const std::string& about);
+    /** Once for each camera, in their order; with a camera's number behind its name, as --glass3, also where others are left out.
+    @param values of `count` cameras
+    @param needed of its kind: a camera after the first that has a value needs one of it, too; empty: none */
+    Option addForEach(const std::string& name, std::string* values, size_t count, const std::string& about,
+                      const std::string& needed = "");
     Option addCallback(const std::string& name, const std::function<void(const std::vector<std::string>&)>& take,
                        const std::string& about);
     Option addFlag(const std::string& name, bool& flag, const std::string& about);
@@ -82,7 +86,12 @@ public:
     //! --config: a file with options by their names without dashes, one a line, as TOML (or INI) writes them. The command line goes first.
     void addSettingsFile(const std::string& about);
 
+    void addFormerName(const std::string& former, const std::string& name);     //!< is taken for it, and in no --help
+
     Option get(const std::string& name) const;
+    //! Options that are added from now on stand together in --help, under this heading.
+    void beginGroup(const std::string& heading);
+    void listFirst(const std::vector<std::string>& names);      //!< in --help, under a heading of their own
     const std::string& name() const { return name_; }
 
     //! Thrown where the command line asks for no more than a text, as --help does.
@@ -100,9 +109,9 @@ public:
 
 private:
     class SettingsFile;
-
     std::string name_;
     std::unique_ptr<CLI::App> app_;
+    OptionNames names_;
     std::shared_ptr<SettingsFile> settingsFile_;
 };
 

@@ -354,7 +354,7 @@ void requireNew(const CheckHistory& history, const std::string& filename, const 
     const std::string last = history.checks.back().time;
     if (check.time < last)
         throw Failure("the last check of '" + filename + "' is of " + last + ", this one of " + check.time + ": time does not run "
-                      "backwards; is the clock right? Give the time at which the images were taken (--time)");
+                      "backwards; is the clock right? Give the time at which the images were taken (--date)");
     for (const CheckRecord& before : history.checks)
         for (const CalibrationImage& image : check.shown)
             if (const CalibrationImage* const old = findImage(before.shown, image.camera, image.pixels, tolerance))
