@@ -90,15 +90,15 @@ std::vector<ChangeNaming::Candidate> ChangeNaming::ranked() const
 {
     const double pixels2 = result_.sigma*result_.sigma;
     std::vector<Hypothesis> tried;
-    for (size_t i = 0; i < candidates_.size(); i++)
-        tried.push_back({std::to_string(i), pixels2*candidates_[i].chiSquare, candidates_[i].parameters});
+    for (const Candidate& c : candidates_)
+        tried.push_back({pixels2*c.chiSquare, c.parameters});
     const double asGiven = std::isfinite(unchanged_.chiSquare) ? pixels2*unchanged_.chiSquare : NO_FIT;
-    std::vector<Hypothesis> ranked = rank({"", asGiven, 0}, tried, problem_.observations(), result_.sigma);
+    std::vector<size_t> ranked = rank({asGiven, 0}, tried, problem_.observations(), result_.sigma);
     if (ranked.empty())                     // too small a change to tell
-        ranked = rank({"", NO_FIT, 0}, tried, problem_.observations(), result_.sigma);
+        ranked = rank({NO_FIT, 0}, tried, problem_.observations(), result_.sigma);
     std::vector<Candidate> named;
-    for (const Hypothesis& h : ranked)
-        named.push_back(candidates_[std::stoul(h.sentence)]);
+    for (size_t i : ranked)
+        named.push_back(candidates_[i]);
     return named;
 }
 

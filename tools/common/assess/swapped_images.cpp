@@ -3,7 +3,7 @@
 
 #include "assess/swapped_images.hpp"
 #include "console/table.hpp"
-#include "diagnose/image_mixups.hpp"
+#include "diagnose/image_changes.hpp"
 #include <algorithm>
 #include <functional>
 
@@ -15,9 +15,7 @@ namespace {
 
 using Pixels = std::vector<Point2d>;
 
-//! Which images of a camera.
-enum State { DIRECT, GLASS, BOTH };
-const char* const STATES[] = {"direct images", "images through the window", "images"};
+const char* const STATES[] = {"direct images", "images through the window", "images"};      // of ImageState
 
 //! What happened to an image, and how the numbers of a symmetrical board may have followed it.
 struct Transform
@@ -42,12 +40,6 @@ Pixels undone(const Pixels& pixels, const ImageTurn& turn, const std::vector<int
     return result;
 }
 
-bool has(const std::vector<View>& views, int camera, State state)
-{
-    return std::any_of(views.begin(), views.end(), [&](const View& view) {
-        return (state != GLASS && view.hasDirect(camera)) || (state != DIRECT && view.hasGlass(camera)); });
-}
-
 class SwappedImages
 {
 public:
@@ -65,10 +57,10 @@ private:
     void addTransforms()
     {
         for (int c = count_ > 1 ? -1 : 0; c < count_; c++)
-            for (State state : {BOTH, DIRECT, GLASS})
+            for (ImageState state : {ALL_IMAGES, DIRECT_IMAGES, GLASS_IMAGES})
             {
-                const bool hasBoth = hasAny(c, DIRECT) && hasAny(c, GLASS);
-                if (!hasAny(c, state) || (state != BOTH && !hasBoth))
+                const bool hasBoth = hasAny(c, DIRECT_IMAGES) && hasAny(c, GLASS_IMAGES);
+                if (!hasAny(c, state) || (state != ALL_IMAGES && !hasBoth))
                     continue;
                 for (const Transform& transform : TRANSFORMS)
                     for (const ImageTurn& renumbering : transform.renumberings)
@@ -76,15 +68,15 @@ private:
             }
     }
 
-    bool hasAny(int c, State state) const
+    bool hasAny(int c, ImageState state) const
     {
         for (int k = 0; k < count_; k++)
-            if ((c < 0 || c == k) && has(views_, k, state))
+            if ((c < 0 || c == k) && hasImages(views_, k, state))
                 return true;
         return false;
     }
 
-    void addTransform(int c, State state, const Transform& transform, const ImageTurn& renumbering)
+    void addTransform(int c, ImageState state, const Transform& transform, const ImageTurn& renumbering)
     {
         std::vector<View> views = views_;
         for (View& view : views)
@@ -99,9 +91,9 @@ private:
                     continue;
                 if (size.empty() || (transform.turn.swap && size.width != size.height))
                     return;
-                if (state != GLASS && view.hasDirect(k))
+                if (state != GLASS_IMAGES && view.hasDirect(k))
                     view.direct[k] = undone(view.direct[k], transform.turn, numbers, size);
-                if (state != DIRECT && view.hasGlass(k))
+                if (state != DIRECT_IMAGES && view.hasGlass(k))
                     view.glass[k] = undone(view.glass[k], transform.turn, numbers, size);
             }
         }
@@ -112,13 +104,10 @@ private:
     {
         for (int c = count_ > 1 ? -1 : 0; c < count_; c++)
         {
-            if (!hasAny(c, DIRECT) || !hasAny(c, GLASS))
+            if (!hasAny(c, DIRECT_IMAGES) || !hasAny(c, GLASS_IMAGES))
                 continue;
             std::vector<View> views = views_;
-            for (View& view : views)
-                for (int k = 0; k < count_; k++)
-                    if (c < 0 || c == k)
-                        std::swap(view.direct[k], view.glass[k]);
+            exchangeStates(views, c);
             all.push_back({"direct images and images through the window" + ofCamera(c) + " exchanged", c, views});
         }
     }
@@ -127,20 +116,14 @@ private:
     {
         for (int b = 1; b < count_; b++)
             for (int a = 0; a < b; a++)
-                for (State state : {BOTH, DIRECT, GLASS})
+                for (ImageState state : {ALL_IMAGES, DIRECT_IMAGES, GLASS_IMAGES})
                 {
-                    const bool hasBoth = (has(views_, a, DIRECT) || has(views_, b, DIRECT))
-                                         && (has(views_, a, GLASS) || has(views_, b, GLASS));
-                    if ((!has(views_, a, state) && !has(views_, b, state)) || (state != BOTH && !hasBoth))
+                    const bool hasBoth = (hasImages(views_, a, DIRECT_IMAGES) || hasImages(views_, b, DIRECT_IMAGES))
+                                         && (hasImages(views_, a, GLASS_IMAGES) || hasImages(views_, b, GLASS_IMAGES));
+                    if ((!hasImages(views_, a, state) && !hasImages(views_, b, state)) || (state != ALL_IMAGES && !hasBoth))
                         continue;
                     std::vector<View> views = views_;
-                    for (View& view : views)
-                    {
-                        if (state != GLASS)
-                            std::swap(view.direct[a], view.direct[b]);
-                        if (state != DIRECT)
-                            std::swap(view.glass[a], view.glass[b]);
-                    }
+                    exchangeCameras(views, a, b, state);
                     all.push_back({std::string(STATES[state]) + format(" of cameras %d and %d exchanged", a + 1, b + 1), -1, views});
                 }
     }
@@ -150,31 +133,14 @@ private:
     const int count_;
 };
 
-//! Each view in parts that have a pose of their own. @param partOf of an image
-Undone split(const std::vector<View>& views, int cameras, const std::string& name, const std::function<int(int, bool)>& partOf, int parts)
+//! Each view in parts that have a pose of their own. @param partOf by camera, and whether through the window
+Undone split(const std::vector<View>& views, const std::string& name, const std::function<int(int, bool)>& partOf, int parts)
 {
     Undone result{name, -1, {}};
     for (const View& view : views)
-    {
-        int used = 0;
         for (int part = 0; part < parts; part++)
-        {
-            View alone = view;
-            alone.direct = alone.glass = {};
-            for (int c = 0; c < cameras; c++)
-            {
-                if (partOf(c, false) == part)
-                    alone.direct[c] = view.direct[c];
-                if (partOf(c, true) == part)
-                    alone.glass[c] = view.glass[c];
-            }
-            if (!alone.countDirect() && !alone.countGlass())
-                continue;
-            used++;
-            result.views.push_back(alone);
-        }
-        result.poses += used - 1;
-    }
+            addPart(view, [&](int camera, bool glass) { return partOf(camera, glass) == part; }, result.views);
+    result.poses = (int)(result.views.size() - views.size());
     return result;
 }
 
@@ -193,8 +159,8 @@ std::vector<Undone> unrelatedImages(const RigModel& rig, const std::vector<View>
         if (undone.poses > 0)
             all.push_back(undone);
     };
-    add(split(views, cameras, "images of different cameras that are not of one moment", [](int c, bool) { return c; }, cameras));
-    add(split(views, cameras, "the board not in one place in the direct and the glass image of a pair (it was moved each time)",
+    add(split(views, "images of different cameras that are not of one moment", [](int c, bool) { return c; }, cameras));
+    add(split(views, "the board not in one place in the direct and the glass image of a pair (it was moved each time)",
               [](int, bool glass) { return glass ? 1 : 0; }, 2));
     return all;
 }

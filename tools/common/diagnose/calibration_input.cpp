@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "diagnose/calibration_input.hpp"
+#include "diagnose/image_changes.hpp"
 #include <algorithm>
 
 using namespace cv::refract;
@@ -28,14 +29,8 @@ CalibrationInput oneCamera(const CalibrationInput& input, int camera)
     one.options.flags &= ~GLASS_USE_POSES;      // they are of camera 1
     one.data.views.clear();
     for (const View& view : input.data.views)
-        if (view.hasDirect(camera) || view.hasGlass(camera))
-        {
-            View alone = view;
-            alone.direct = alone.glass = {};
-            alone.direct[0] = view.direct[camera];
-            alone.glass[0] = view.glass[camera];
-            one.data.views.push_back(alone);
-        }
+        addPart(view, [=](int c, bool) { return c == camera; }, one.data.views);
+    exchangeCameras(one.data.views, 0, camera, ALL_IMAGES);
     return one;
 }
 

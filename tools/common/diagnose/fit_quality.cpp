@@ -42,16 +42,21 @@ double largestSoundError(const RigData& data)
     return limit;
 }
 
-double medianErrorOfFit(const RigData& data, const RigOptions& given, Fit* result)
+RigOptions exactly(RigOptions options)
 {
-    // What is known of a value does not matter to pixels; a wedge or a bow that is free makes each iteration slow.
-    RigOptions options = given;
     options.std = GivenStd();
     options.window.wedge.clear();
     if (options.window.shape == WINDOW_BENT)
         options.window.shape = WINDOW_FLAT;
+    return options;
+}
+
+double medianErrorOfFit(const RigData& data, const RigOptions& given, Fit* result)
+{
     try
     {
+        // What is known of a value does not matter to pixels; a wedge or a bow that is free makes each iteration slow.
+        const RigOptions options = exactly(given);
         std::vector<LensSource> sources;
         const Fit fit = fitImages(data, startModel(data, options, sources), allViews(data), options.flags, SOON);
         if (result)

@@ -20,6 +20,9 @@ double medianCornerError(const RigData& data, const std::vector<Residual>& resid
 //! The largest median error of correct input, px.
 double largestSoundError(const RigData& data);
 
+//! All values of windows and boards as exact; faces are parallel then, and panes flat.
+RigOptions exactly(RigOptions options);
+
 //! medianCornerError of a fit to all the data, NO_FIT if there is none soon. @param result gets that fit
 double medianErrorOfFit(const RigData& data, const RigOptions& options, Fit* result = nullptr);
 

@@ -6,6 +6,7 @@
 #include "measure/distributions.hpp"
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <set>
 
 using namespace cv;
@@ -132,7 +133,7 @@ Trial triedAll(const RigData& data, const RigOptions& options, const Fit& fit, c
 
 } // namespace
 
-std::vector<Hypothesis> rank(const Hypothesis& asGiven, const std::vector<Hypothesis>& tried, int observations, double noise)
+std::vector<size_t> rank(const Hypothesis& asGiven, const std::vector<Hypothesis>& tried, int observations, double noise)
 {
     double variance = asGiven.squares/observations;
     for (const Hypothesis& h : tried)
@@ -141,18 +142,20 @@ std::vector<Hypothesis> rank(const Hypothesis& asGiven, const std::vector<Hypoth
     if (!(variance > 0.) || !std::isfinite(variance))
         return {};
     const auto criterion = [&](const Hypothesis& h) { return h.squares/variance + h.parameters*std::log((double)observations); };
-    std::vector<Hypothesis> ranked = tried;
-    std::stable_sort(ranked.begin(), ranked.end(), [&](const Hypothesis& a, const Hypothesis& b) { return criterion(a) < criterion(b); });
-    const double gained = ranked.empty() ? 0. : criterion(asGiven) - criterion(ranked[0]);
+    std::vector<size_t> ranked(tried.size());
+    std::iota(ranked.begin(), ranked.end(), 0);
+    std::stable_sort(ranked.begin(), ranked.end(), [&](size_t a, size_t b) { return criterion(tried[a]) < criterion(tried[b]); });
+    const double gained = ranked.empty() ? 0. : criterion(asGiven) - criterion(tried[ranked[0]]);
     if (!(gained > VERY_STRONG))
         return {};
     const double margin = std::isfinite(gained) ? std::max(VERY_STRONG, std::min(AS_GOOD_SHARE*gained, MORE_NOISE*observations))
                                                  : VERY_STRONG;
     // What is as good needs no more than to explain as much: the penalty of its parameters says which is simpler, not which is true. A
     // motion of all boards has six, a thickness one, and along the axis images do not tell one from the other.
-    const double most = ranked[0].squares/variance + margin, leastGain = criterion(asGiven) - VERY_STRONG,
-                 best = criterion(ranked[0]);
-    const auto isMuchWorse = [&](const Hypothesis& h) {
+    const double most = tried[ranked[0]].squares/variance + margin, leastGain = criterion(asGiven) - VERY_STRONG,
+                 best = criterion(tried[ranked[0]]);
+    const auto isMuchWorse = [&](size_t i) {
+        const Hypothesis& h = tried[i];
         return !(criterion(h) <= best + margin) && !(h.squares/variance <= most && criterion(h) < leastGain); };
     ranked.erase(std::remove_if(ranked.begin() + 1, ranked.end(), isMuchWorse), ranked.end());
     return ranked;
@@ -180,27 +183,25 @@ std::vector<Contradiction> testGivenValues(const RigData& data, const RigOptions
     const double squares = trial.noise*trial.noise;
     std::vector<Hypothesis> hypotheses;
     for (const Tested& t : trial.tested)
-        hypotheses.push_back({t.cause->kind, squares*t.chiSquare, t.parameters});
-    const std::vector<Hypothesis> ranked = rank({"", squares*trial.given.chiSquare, 0}, hypotheses, (int)trial.dof, 0.);
+        hypotheses.push_back({squares*t.chiSquare, t.parameters});
     const double variance = std::pow(trial.leastNoise()/trial.noise, 2);
     std::set<std::string> named;
     std::string text;
     bool isSure = false;
     double sigma = fit.sigma;
-    for (const Hypothesis& h : ranked)
+    for (size_t i : rank({squares*trial.given.chiSquare, 0}, hypotheses, (int)trial.dof, 0.))
     {
-        const auto t = std::find_if(trial.tested.begin(), trial.tested.end(), [&](const Tested& x) {
-            return x.cause->kind == h.sentence && squares*x.chiSquare == h.squares; });
-        const double deviance = (trial.given.chiSquare - t->chiSquare)/variance;
-        const double probability = upperTailChiSquared(t->parameters, deviance);
-        if (!(probability < TOLD) || (int)named.size() >= MOST_NAMED || !named.insert(h.sentence).second)
+        const Tested& t = trial.tested[i];
+        const double deviance = (trial.given.chiSquare - t.chiSquare)/variance;
+        const double probability = upperTailChiSquared(t.parameters, deviance);
+        if (!(probability < TOLD) || (int)named.size() >= MOST_NAMED || !named.insert(t.cause->kind).second)
             continue;
         if (text.empty())
         {
             isSure = probability < SURE;
-            sigma = trial.noise*std::sqrt(t->chiSquare/std::max(1., trial.dof - t->parameters));
+            sigma = trial.noise*std::sqrt(t.chiSquare/std::max(1., trial.dof - t.parameters));
         }
-        text += (text.empty() ? "" : "; or ") + t->cause->sentence(t->found, deviationsOf(deviance, t->parameters));
+        text += (text.empty() ? "" : "; or ") + t.cause->sentence(t.found, deviationsOf(deviance, t.parameters));
     }
     if (text.empty())
         return {};

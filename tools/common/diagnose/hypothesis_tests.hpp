@@ -23,16 +23,15 @@ of n observations and k parameters set free, where sigma is the noise that the b
 
 struct Hypothesis
 {
-    std::string sentence;       //!< the cause, with its value and +-
     double squares;             //!< sum of squares, px^2, of the residuals and of what priors add; infinity: no fit
     int parameters;             //!< set free, beside those of the fit as given
 };
 
-/** The hypotheses that explain the observations, the best first; others only if they explain about as much. Empty if none is clearly
-better than nothing wrong (a difference of 10, "very strong evidence" of Kass and Raftery, JASA 90, 1995).
+/** Which hypotheses explain the observations, the best first; others only if they explain about as much. Empty if none is clearly better
+than nothing wrong (a difference of 10, "very strong evidence" of Kass and Raftery, JASA 90, 1995).
 @param asGiven the fit with nothing given up. @param observations their number (two a point)
 @param noise px, the least standard deviation that a coordinate of these observations can have; 0: not known */
-std::vector<Hypothesis> rank(const Hypothesis& asGiven, const std::vector<Hypothesis>& tried, int observations, double noise);
+std::vector<size_t> rank(const Hypothesis& asGiven, const std::vector<Hypothesis>& tried, int observations, double noise);
 
 //! A given value that the images contradict.
 struct Contradiction

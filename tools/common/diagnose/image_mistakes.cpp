@@ -5,6 +5,7 @@
 #include "console/numbers.hpp"
 #include "console/table.hpp"
 #include "diagnose/fit_quality.hpp"
+#include "diagnose/image_changes.hpp"
 #include "diagnose/image_disagreement.hpp"
 #include "diagnose/pair_maps.hpp"
 #include <opencv2/calib3d.hpp>
@@ -24,10 +25,7 @@ namespace {
 RigData exchanged(const RigData& given, int only)
 {
     RigData data = given;
-    for (View& view : data.views)
-        for (int c = 0; c < data.cameraCount; c++)
-            if (only < 0 || only == c)
-                std::swap(view.direct[c], view.glass[c]);
+    exchangeStates(data.views, only);
     return data;
 }
 
@@ -44,14 +42,8 @@ RigData mirroredData(const RigData& given, Mirror mirror, int only)
         for (int c = 0; c < data.cameraCount; c++)
             for (std::vector<cv::Point2d>* pixels : {&view.direct[c], &view.glass[c]})
                 for (cv::Point2d& p : *pixels)
-                {
-                    if (only >= 0 && only != c)
-                        continue;
-                    if (mirror == ROWS)
-                        p.y = data.imageSize[c].height - 1. - p.y;
-                    if (mirror == COLUMNS)
-                        p.x = data.imageSize[c].width - 1. - p.x;
-                }
+                    if (only < 0 || only == c)
+                        p = undone({mirror == COLUMNS, mirror == ROWS, false}, p, data.imageSize[c]);
     }
     return data;
 }
@@ -200,42 +192,17 @@ Explanation mirroredPoints(const CalibrationInput& input)
     return best;
 }
 
-namespace {
-
-//! The images of one camera and one state, each in a view of its own.
-RigData apartFromOthers(const RigData& given, int camera, bool glass)
-{
-    RigData data = given;
-    for (const View& view : given.views)
-    {
-        const std::vector<cv::Point2d>& pixels = (glass ? view.glass : view.direct)[camera];
-        if (pixels.empty())
-            continue;
-        View alone = view;
-        for (int c = 0; c < data.cameraCount; c++)
-        {
-            alone.direct[c].clear();
-            alone.glass[c].clear();
-        }
-        (glass ? alone.glass : alone.direct)[camera] = pixels;
-        View& others = data.views[&view - given.views.data()];
-        (glass ? others.glass : others.direct)[camera].clear();
-        data.views.push_back(alone);
-    }
-    data.views.erase(std::remove_if(data.views.begin(), data.views.end(), [](const View& v) { return !v.hasGlass() && !v.countDirect(); }),
-                     data.views.end());
-    return data;
-}
-
-} // namespace
-
 Explanation imagesOfOtherMoments(const CalibrationInput& input)
 {
     Explanation best{"", NO_FIT};
     for (int c = 0; c < input.data.cameraCount; c++)
         for (bool glass : {true, false})
         {
-            const RigData data = apartFromOthers(input.data, c, glass);
+            RigData data = input.data;
+            data.views.clear();
+            for (bool isAlone : {false, true})
+                for (const View& view : input.data.views)
+                    addPart(view, [=](int k, bool through) { return (k == c && through == glass) == isAlone; }, data.views);
             if (pairsFromOneMap(data) > WINDOWS_PX || camerasApart(data, input.options) > MOMENTS_PX)
                 continue;       // another is wrong, or not only this one
             const std::string option = (glass ? "--glass" : "--direct") + cameraSuffix(c);
@@ -318,18 +285,8 @@ Explanation unpairedImages(const CalibrationInput& input)
     RigData data = input.data;
     data.views.clear();
     for (const View& view : input.data.views)
-    {
-        View direct = view, glass = view;
-        for (int c = 0; c < data.cameraCount; c++)
-        {
-            direct.glass[c].clear();
-            glass.direct[c].clear();
-        }
-        if (view.hasGlass())
-            data.views.push_back(glass);
-        if (view.countDirect())
-            data.views.push_back(direct);
-    }
+        for (bool glass : {true, false})
+            addPart(view, [=](int, bool through) { return through == glass; }, data.views);
     return {"each image fitted alone, so equal names of --direct and --glass are not one place of the board (it moved, or it "
             "was hand-held: --unpaired)", medianErrorOfFit(data, input.options)};
 }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "diagnose/image_mixups.hpp"
+#include "diagnose/image_changes.hpp"
 #include "diagnose/fit_quality.hpp"
 #include "diagnose/image_disagreement.hpp"
 #include "console/failure.hpp"
@@ -109,28 +110,6 @@ RigData changedBack(const RigData& given, Change change)
     return data;
 }
 
-RigData exchanged(const RigData& given, int a, int b, bool direct)
-{
-    RigData data = given;
-    for (View& view : data.views)
-        direct ? std::swap(view.direct[a], view.direct[b]) : std::swap(view.glass[a], view.glass[b]);
-    return data;
-}
-
-bool hasImages(const RigData& data, int camera, bool direct)
-{
-    return std::any_of(data.views.begin(), data.views.end(), [&](const View& view) {
-        return direct ? view.hasDirect(camera) : view.hasGlass(camera); });
-}
-
-RigData exchangedStates(const RigData& given)
-{
-    RigData data = given;
-    for (View& view : data.views)
-        std::swap(view.direct, view.glass);
-    return data;
-}
-
 struct Candidate
 {
     MixUp mixUp;
@@ -182,41 +161,6 @@ std::string sentenceOf(Change change, const RigData& data, int camera, bool dire
 
 } // namespace
 
-Point2d undone(const ImageTurn& turn, Point2d p, Size size)
-{
-    if (turn.swap)
-        std::swap(p.x, p.y);
-    return Point2d(turn.flipX ? size.width - 1. - p.x : p.x, turn.flipY ? size.height - 1. - p.y : p.y);
-}
-
-std::vector<int> renumbered(const std::vector<Point3d>& board, const ImageTurn& by)
-{
-    if (board.empty())
-        return {};
-    Vec3d low = board[0], high = board[0];
-    for (const Point3d& X : board)
-        for (int axis = 0; axis < 3; axis++)
-        {
-            low[axis] = std::min(low[axis], Vec3d(X)[axis]);
-            high[axis] = std::max(high[axis], Vec3d(X)[axis]);
-        }
-    const double near = 1e-6*norm(high - low);
-    const Vec3d middle = 0.5*(low + high);
-    std::vector<int> numbers;
-    for (const Point3d& X : board)
-    {
-        Vec3d there = Vec3d(X) - middle;
-        if (by.swap)
-            std::swap(there[0], there[1]);
-        there = Vec3d(by.flipX ? -there[0] : there[0], by.flipY ? -there[1] : there[1], there[2]) + middle;
-        const auto found = std::find_if(board.begin(), board.end(), [&](const Point3d& Y) { return norm(Vec3d(Y) - there) <= near; });
-        if (found == board.end())
-            return {};
-        numbers.push_back(int(found - board.begin()));
-    }
-    return numbers;
-}
-
 MixUps findMixUps(const CalibrationInput& input)
 {
     const RigData& data = input.data;
@@ -238,18 +182,26 @@ MixUps findMixUps(const CalibrationInput& input)
         least = std::min(least, left);
     };
     const std::vector<int> all = allCameras(data);
-    attempt(all, [&data] { return exchangedStates(data); }, {lenses.glass, lenses.direct}, "--direct and --glass exchanged");
+    const auto attemptExchange = [&](const std::vector<int>& cameras, const std::function<void(std::vector<View>&)>& exchange,
+                                     const RoughLenses& now, const std::string& sentence) {
+        attempt(cameras, [exchange, &data] {
+            RigData undone = data;
+            exchange(undone.views);
+            return undone; }, now, sentence); };
+    attemptExchange(all, [](std::vector<View>& views) { exchangeStates(views, -1); }, {lenses.glass, lenses.direct},
+                    "--direct and --glass exchanged");
     for (int b = 1; b < data.cameraCount; b++)
         for (int a = 0; a < b; a++)
-            for (bool direct : {false, true})
+            for (ImageState state : {GLASS_IMAGES, DIRECT_IMAGES})
             {
-                if (!hasImages(data, a, direct) && !hasImages(data, b, direct))
+                if (!hasImages(data.views, a, state) && !hasImages(data.views, b, state))
                     continue;
-                const char* const option = direct ? "--direct" : "--glass";
+                const char* const option = state == DIRECT_IMAGES ? "--direct" : "--glass";
                 RoughLenses now = lenses;
-                direct ? std::swap(now.direct[a], now.direct[b]) : std::swap(now.glass[a], now.glass[b]);
-                attempt({a, b}, [=, &data] { return exchanged(data, a, b, direct); }, now,
-                        option + cameraSuffix(a) + " and " + option + cameraSuffix(b) + " exchanged");
+                PerCamera<Matx33d>& exchanged = state == DIRECT_IMAGES ? now.direct : now.glass;
+                std::swap(exchanged[a], exchanged[b]);
+                attemptExchange({a, b}, [=](std::vector<View>& views) { exchangeCameras(views, a, b, state); }, now,
+                                option + cameraSuffix(a) + " and " + option + cameraSuffix(b) + " exchanged");
             }
     // Of one camera by itself, before which boards are held by hand, turned images are as good as others: the window turns with them.
     const auto mayBe = [&](int change, int camera) {

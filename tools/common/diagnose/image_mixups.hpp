@@ -11,16 +11,6 @@
 cause if then pairs show the board nearly where it was, and two cameras' boards agree on where the cameras are to each other. */
 namespace tools {
 
-//! First rows and columns are exchanged, then columns or rows counted from the other side.
-struct ImageTurn
-{
-    bool flipX, flipY, swap;
-};
-//! A pixel of an image that was turned or mirrored, where it would have been.
-cv::Point2d undone(const ImageTurn& turn, cv::Point2d p, cv::Size size);
-//! Where each point is in a board that is turned or mirrored about its middle; empty: it is not symmetrical.
-std::vector<int> renumbered(const std::vector<cv::Point3d>& board, const ImageTurn& by);
-
 struct MixUp
 {
     std::string sentence;

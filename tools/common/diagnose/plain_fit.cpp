@@ -68,18 +68,6 @@ const int ITERATIONS = 40;
 const double LEFT_BY_CAUSE = 0.8;       // of the residuals, at most, if a wrong value is what is wrong,
 const double CLEAN = 1.3;               // and no more than this times what each image has by itself
 
-//! As exact: where a value is far off, a fit within what is known of it creeps.
-RigOptions exactly(RigOptions options)
-{
-    options.std = GivenStd();
-    for (GivenPlace& place : options.places)
-        place.covariance = Matx44d::zeros();
-    options.window.wedge.clear();
-    if (options.window.shape == WINDOW_BENT)
-        options.window.shape = WINDOW_FLAT;
-    return options;
-}
-
 //! The same fit, with what is known of the values that it took as exact.
 Fit withKnown(const RigData& data, const Fit& exact, const RigOptions& options)
 {
@@ -175,7 +163,9 @@ PlainFit fitPlainly(const CalibrationInput& input, const std::optional<RigModel>
     try
     {
         std::vector<LensSource> sources;
-        const RigOptions exact = exactly(input.options);
+        RigOptions exact = exactly(input.options);      // where a value is far off, a fit within what is known of it creeps
+        for (GivenPlace& place : exact.places)
+            place.covariance = Matx44d::zeros();
         RigOptions options = input.options;
         const RigModel start = startModel(input.data, exact, sources, found ? &*found : nullptr);
         plain.noise = imageNoise(start, input.data.views).sigma;
