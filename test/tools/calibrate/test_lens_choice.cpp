@@ -117,6 +117,35 @@ TEST_CASE("A fit that holds the lens holds what the lens choice left out, too", 
     CHECK(free.stdDeviations.at<double>(INTRINSICS + options.lensCoefficients) > 0.);
 }
 
+TEST_CASE("A lens that is chosen through the window is where the calibration starts", "[lens_choice]")
+{
+    GlassWindow water;
+    water.normal = normalize(Vec3d(0.12, -0.06, 1));
+    water.distance = 80;
+    water.outerIndex = 1.333;
+    const RigData data = dataOf(bent(water), 12, true, 23);
+    RigOptions options;
+    options.flags = GLASS_FREE_INTRINSICS | GLASS_FREE_DISTANCE;
+    options.window = water;
+    options.window.normal = Vec3d(0, 0, 1);
+    options.window.distance = 40;
+    const LensChoice choice = chooseLens(data, options, false);
+    REQUIRE(!choice.scores.empty());
+    REQUIRE(!choice.direct);
+    CAPTURE(choice.sentence());
+    const auto focalLength = [&]()
+    {
+        std::vector<LensSource> sources;
+        const RigModel start = startModel(data, options, sources);
+        CHECK(sources[0].kind == LensSource::FROM_GLASS);
+        return start.cameras[0]->cameraMatrix().at<double>(0, 0);
+    };
+    options.lensCoefficients = 4;
+    CHECK(focalLength() > 1.2*1100);            // a pinhole has taken up the water
+    setLens(choice, options);
+    CHECK(focalLength() == Approx(1100).epsilon(0.02));
+}
+
 TEST_CASE("A wide fisheye is chosen where OpenCV's model does not describe it", "[lens_choice]")
 {
     const Ptr<RefractiveCamera> camera = RefractiveCamera::createFisheye(Matx33d(400, 0, 645, 0, 402, 508, 0, 0, 1),

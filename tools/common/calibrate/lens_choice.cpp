@@ -135,8 +135,12 @@ LensChoice chooseCoefficients(const RigData& data, const LensImages& images, boo
         const int chosen = selectLensCoefficients(images.object, images.direct, images.glass, cameras, windows, Rs, Ts, flags, scores,
                                                   leftOut);
         choice.leftOut.resize(data.cameraCount);
+        choice.lenses.resize(data.cameraCount);
         for (size_t k = 0; k < cameras.size(); k++)
+        {
             choice.leftOut[images.cameras[k]] = leftOut[k];
+            choice.lenses[images.cameras[k]] = cameras[k];
+        }
         for (int i = 0; i < scores.rows; i++)
         {
             choice.scores.push_back({fisheye ? "fisheye" : "opencv", (int)scores(i, 0), (int)scores(i, 1), scores(i, 2)});
@@ -207,6 +211,7 @@ LensChoice chooseLens(const RigData& data, const RigOptions& options, bool robus
     {
         choice.chosen = before + fisheye.chosen;
         choice.leftOut = fisheye.leftOut;
+        choice.lenses = fisheye.lenses;
     }
     return choice;
 }
@@ -218,6 +223,8 @@ void setLens(const LensChoice& choice, RigOptions& options)
     options.lensCoefficients = isFisheye ? FISHEYE_LENS : LENGTHS[choice.lens().coefficients];
     options.flags |= choice.lens().flags;
     options.leftOut = choice.leftOut;
+    if (!choice.direct)
+        options.lensThroughWindow = choice.lenses;
     int longest = std::max(options.lensCoefficients, 0);
     for (const Mat& prior : choice.leftOut)
         for (int i = INTRINSICS; i < prior.rows; i++)

@@ -28,6 +28,8 @@ struct LensChoice
     bool undetermined = false;  //!< the images do not tell a focal length: no other model makes that better
     std::vector<cv::Mat> leftOut = {};  //!< of each camera, what they leave open of left out coefficients; empty: its lens is known
 
+    std::vector<cv::Ptr<cv::refract::RefractiveCamera>> lenses = {};   //!< of each camera, as fitted; null: its lens is known
+
     const LensScore& lens() const { return scores[chosen]; }
     std::string sentence() const;
 };

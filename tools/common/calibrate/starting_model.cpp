@@ -30,6 +30,15 @@ std::vector<TargetView> viewsOf(const RigData& data, int camera, bool glass)
     return views;
 }
 
+//! A lens with as many coefficients as another has, the rest of its own being 0.
+Ptr<RefractiveCamera> withCoefficientsOf(const Ptr<RefractiveCamera>& lens, const Ptr<RefractiveCamera>& other)
+{
+    const Ptr<RefractiveCamera> result = other->clone();
+    const Mat parameters = lens->lensParameters();
+    result->setLensParameters(parameters.rowRange(0, result->lensParameters().rows));
+    return result;
+}
+
 Ptr<RefractiveCamera> startLens(const RigData& data, const RigOptions& options, int camera, LensSource& source)
 {
     if (options.known[camera])
@@ -49,7 +58,10 @@ Ptr<RefractiveCamera> startLens(const RigData& data, const RigOptions& options, 
     if (!determineLens(views))
         throw Failure(format("camera %d: %d image(s) to calibrate the lens from are too few: give at least 3 (better 10 or "
                              "more, tilted to all sides), or --camera%s", camera + 1, source.views, suffix.c_str()));
-    return calibratePinhole(views, data.imageSize[camera], options.carriedCoefficients(camera), options.flags, source.rms);
+    const Ptr<RefractiveCamera> pinhole = calibratePinhole(views, data.imageSize[camera], options.carriedCoefficients(camera),
+                                                           options.flags, source.rms);
+    return source.kind == LensSource::FROM_GLASS && !options.lensThroughWindow.empty()
+        ? withCoefficientsOf(options.lensThroughWindow[camera], pinhole) : pinhole;
 }
 
 //! A lens with many coefficients, overfitted, may fold the image over itself; then nothing else can work.

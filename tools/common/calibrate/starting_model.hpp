@@ -18,6 +18,7 @@ struct RigOptions
     int flags = 0;                                          //!< GlassCalibrationFlags
     int lensCoefficients = 5;                               //!< of the lens that the images determine
     std::vector<cv::Mat> leftOut = {};                      //!< what they leave open of more, of each camera (LensChoice); may be empty
+    std::vector<cv::Ptr<cv::refract::RefractiveCamera>> lensThroughWindow = {}; //!< of each camera, where it was chosen with its window
     std::vector<int> windows = {};                          //!< which window each camera looks through; empty: each has its own
     PerCamera<cv::Ptr<cv::refract::RefractiveCamera>> known;    //!< lens from a file; null: from the images
     PerCamera<cv::Mat> knownCovariance;                     //!< of its lens parameters; empty where the file has none
