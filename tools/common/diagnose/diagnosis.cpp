@@ -107,17 +107,14 @@ const Mistake LAST_MISTAKES[] = {
     {isRig, unrelatedViews}};
 
 /** px, that correct input leaves: as much as the lens's own images do, or, of lenses that only images through the windows tell, as smooth
-maps do; 0: not known. */
-double cleanError(const CalibrationInput& input, const PlainFit& plain)
+maps do; 0: not known.
+@param noise px, what smooth maps leave (noiseOfImages) */
+double cleanError(const CalibrationInput& input, double noise)
 {
     double worst = 0.;
-    bool isSealed = true;
     for (int c = 0; c < input.data.cameraCount; c++)
-    {
         worst = std::max(worst, errorOfDirect(input, c));
-        isSealed = isSealed && !input.options.known[c];
-    }
-    return CLEAN*(worst > 0. || !isSealed ? worst : MEDIAN*plain.noise);
+    return CLEAN*(worst > 0. || knowsLenses(input) ? worst : MEDIAN*noise);
 }
 
 template <size_t N>
@@ -206,13 +203,11 @@ std::vector<std::string> imageMistakes(const CalibrationInput& input, const MixU
 {
     if (isSealed(input) && isRig(input))
     {
-        PlainFit alone;
-        alone.noise = noiseOfImages(input);
-        const Explanation medium = wrongMediumOfEach(input, cleanError(input, alone));
+        const Explanation medium = wrongMediumOfEach(input, cleanError(input, noiseOfImages(input)));
         if (medium.px < NO_FIT)
             return {fits(input, medium, 0.)};
     }
-    const double sound = largestSoundError(input.data), clean = cleanError(input, plain);
+    const double sound = largestSoundError(input.data), clean = cleanError(input, plain.noise);
     if (!hasPairs(input.data))          // of hand-held boards a window or a lens between two others explains much, too
     {
         const Explanation apart = camerasInOneFolder(input);
@@ -280,7 +275,7 @@ std::vector<std::string> diagnose(const CalibrationInput& input, const MixUps& m
     std::vector<std::string> sentences = imagesToo ? imageMistakes(input, mixUps, plain) : std::vector<std::string>();
     if (!sentences.empty())
         return sentences;
-    const double sound = largestSoundError(input.data), clean = cleanError(input, plain);
+    const double sound = largestSoundError(input.data), clean = cleanError(input, plain.noise);
     if (plain.explained)        // a given value; what is much further from what is given may explain it too
     {
         std::vector<Explanation> others = explanationsOf(input, FAR_OFF, sound, clean, plain);
@@ -368,7 +363,7 @@ bool isSuspicious(const CalibrationInput& input, PlainFit& plain)
 {
     if (!(plain.px < largestSoundError(input.data)))
         return true;
-    const double clean = cleanError(input, plain);
+    const double clean = cleanError(input, plain.noise);
     if (clean > 0. && CLEAN*plain.px > IMPLAUSIBLE*clean)
         return true;
     // In another medium than theirs images fit to some extent, with a window that is tilted far, or with another focal length; those of
