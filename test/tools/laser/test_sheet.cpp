@@ -10,6 +10,7 @@
 #include "laser_scene.hpp"
 #include "temporary_folder.hpp"
 #include <catch2/catch.hpp>
+#include <fstream>
 #include <iostream>
 
 using namespace cv;
@@ -228,7 +229,11 @@ TEST_CASE("A sheet's file comes back, and belongs to its camera", "[laser][sheet
     window.distance += 1e-6;
     other.cameras[0].camera = copyWithWindow(other.cameras[0].camera, window);
     CHECK_THROWS_WITH(readSheet(path, other), Catch::Contains("another camera calibration"));
-    CHECK_THROWS_WITH(readSheet(folder / "none.yml", calibration), Catch::Contains("cannot read"));
+    CHECK_THROWS_WITH(readSheet(folder / "none.yml", calibration), Catch::Contains("cannot read") && Catch::Contains("cannot be opened"));
+    const std::string empty = folder / "empty.yml";
+    std::ofstream(empty).flush();
+    CHECK_THROWS_WITH(readSheet(empty, calibration), Catch::Contains("is empty"));
+    CHECK_THROWS_WITH(EmitterPrior(empty), Catch::Contains("is empty") && Catch::Contains("rotation_std_deg"));
 
     // In another medium it is another sheet; within what is known of its index it is the same.
     Medium medium;

@@ -45,6 +45,22 @@ Ptr<RefractiveCamera> withWindow(const RefractiveCamera& camera, const VectorXd&
 
 } // namespace
 
+FileStorage openDescription(const std::string& filename, const std::string& content)
+{
+    std::string reason = "it holds no map";
+    try
+    {
+        const FileStorage fs = cv::refract::openStorage(filename);
+        if (fs.isOpened() && fs.root().isMap())
+            return fs;
+    }
+    catch (const cv::Exception& e)
+    {
+        reason = e.err;
+    }
+    throw Failure("cannot read '" + filename + "' (" + reason + "): it must describe " + content);
+}
+
 std::vector<std::string> emitterKeys()
 {
     return {"image_width", "image_height", "camera_matrix", "distortion_coefficients", "lens_model", "glass_window", "rvec", "tvec",
@@ -83,15 +99,8 @@ void writeEmitter(cv::FileStorage& fs, const Emitter& emitter)
 
 EmitterPrior::EmitterPrior(const std::string& filename) : filename_(filename)
 {
-    FileStorage fs;
-    try
-    {
-        fs = cv::refract::openStorage(filename);
-    }
-    catch (const cv::Exception&) {}
-    if (!fs.isOpened() || !fs.root().isMap())
-        throw Failure("cannot read '" + filename + "': it must describe the emitter: camera_matrix, distortion_coefficients, glass_window, "
-                      "rvec, tvec, line, rotation_std_deg, position_std");
+    const FileStorage fs = openDescription(filename, "the emitter: camera_matrix, distortion_coefficients, glass_window, rvec, tvec, line, "
+                                                     "rotation_std_deg, position_std");
     const Keys keys(fs.root(), "'" + filename + "'");
     std::vector<std::string> known = emitterKeys();
     known.insert(known.end(), {"rotation_std_deg", "position_std", "glass_window_std"});

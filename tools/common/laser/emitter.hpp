@@ -26,6 +26,9 @@ struct Emitter
     cv::Vec3d translation() const { return -(R*position); }
 };
 
+//! Opens a map of FileStorage. Throws Failure that says why it cannot be read. @param content what it must describe
+cv::FileStorage openDescription(const std::string& filename, const std::string& content);
+
 //! The keys that readEmitter() takes.
 std::vector<std::string> emitterKeys();
 

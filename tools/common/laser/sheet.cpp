@@ -4,7 +4,6 @@
 #include "laser/sheet.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "calibrate/rigid_transform.hpp"
-#include "camera/storage.hpp"
 #include "console/failure.hpp"
 #include "console/file_output.hpp"
 #include "math/dense.hpp"
@@ -153,15 +152,7 @@ void pointsOnSheet(const Calibration& calibration, const Sheet& sheet, const std
 
 Sheet readSheet(const std::string& filename, const Calibration& calibration)
 {
-    FileStorage fs;
-    try
-    {
-        fs = cv::refract::openStorage(filename);
-    }
-    catch (const cv::Exception& e)
-    {
-        throw Failure("cannot read '" + filename + "' (" + e.err + "): it must be what refract_laser --sheet-out wrote");
-    }
+    const FileStorage fs = openDescription(filename, "a sheet of light, as refract_laser --sheet-out writes it");
     Sheet sheet;
     std::vector<double> camera;
     std::vector<double> plane, depth;
