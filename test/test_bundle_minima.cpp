@@ -124,5 +124,7 @@ TEST_CASE("Wands before half a camera: how many are right, and the errors over w
         }
         std::cout << "[numbers] wand, half a camera, " << (inDomes ? "domes" : "panes") << ": where true points lead " << right << " of "
                   << TRIALS << ", squared error of R and T over stated " << sum/TRIALS << " (seed " << seed() << ")\n";
+        CHECK(right == TRIALS);
+        CHECK(std::abs(sum/TRIALS - 1) < 4*std::sqrt(2./(12*TRIALS)));      // of twelve degrees of freedom
     }
 }

@@ -141,4 +141,7 @@ TEST_CASE("Bent panes and wrong matches: what turns, and the errors over what is
             std::cout << "number " << number << " turned\n";
     }
     print(tally, trials(100));
+    CHECK(tally.turned == 0);
+    CHECK(std::abs(tally.squares/tally.normals - 1) < 4*std::sqrt(2./tally.normals));
+    CHECK(tally.lost <= 3 + 1e-3*tally.good);
 }

@@ -143,7 +143,7 @@ TEST_CASE("Pairs give normal and bow back, either way round, in air and water", 
 TEST_CASE("Panes bent by 2 mm a metre: with a prior, normals and points are as good as stated", "[bent][given][slow]")
 {
     CAPTURE(seed());
-    const int TRIALS = std::getenv("TRIALS") ? std::atoi(std::getenv("TRIALS")) : 20;
+    const int TRIALS = trials(20);
     struct Flow { const char* name; bool paired; double outerIndex; int views; };
     for (const Flow& flow : { Flow{ "pairs in air", true, 1, 6 }, Flow{ "pairs in water", true, 1.333, 6 },
                               Flow{ "hand-held in water", false, 1.333, 15 } })

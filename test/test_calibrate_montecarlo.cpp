@@ -165,6 +165,7 @@ TEST_CASE("The paper's least squares and calibrateGlassNormal on the same rig", 
         const std::string what = "normal from " + std::to_string(views) + " pair(s), RMS over " + std::to_string(runs) + ", ";
         printNumber(what + "paper's least squares", std::sqrt(paper), "deg");
         printNumber(what + "calibrateGlassNormal", std::sqrt(pairs), "deg");
+        CHECK(pairs < paper);
     }
 }
 

@@ -93,7 +93,7 @@ TEST_CASE("Errors of the targets that are 0 change nothing", "[targets]")
 TEST_CASE("Boards that moved between direct and glass images: ignored, the normal is wrong; as a nuisance, its +- holds", "[targets]")
 {
     CAPTURE(seed());
-    const int TRIALS = std::getenv("TRIALS") ? std::atoi(std::getenv("TRIALS")) : 24;
+    const int TRIALS = trials(24);
     const double rotation = 2e-3, translation = 0.1;
     for (double outerIndex : { 1., 1.333 })
     {
@@ -131,7 +131,7 @@ TEST_CASE("Boards that moved between direct and glass images: ignored, the norma
 TEST_CASE("The square of a board, known to a part in a thousand, is in the +- of the base line", "[targets]")
 {
     CAPTURE(seed());
-    const int TRIALS = std::getenv("TRIALS") ? std::atoi(std::getenv("TRIALS")) : 24;
+    const int TRIALS = trials(24);
     const double sigma = 1e-3;
     const RigTruth truth = makeRig(2, { 0, 1 }, 1.333);
     double ignored = 0, considered = 0;

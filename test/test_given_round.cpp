@@ -10,8 +10,6 @@ using namespace scenes;
 
 namespace {
 
-int trialsOr(int usual) { return std::getenv("TRIALS") ? std::atoi(std::getenv("TRIALS")) : usual; }
-
 struct Shape
 {
     const char* name;
@@ -25,7 +23,7 @@ const Shape SHAPES[] = { { "dome", domeAt }, { "tube", tubeAt } };
 TEST_CASE("Where a dome or tube is, is as good as the Cramer-Rao bound", "[dome][tube][calibrate][slow]")
 {
     CAPTURE(seed());
-    const int TRIALS = trialsOr(30);
+    const int TRIALS = trials(30);
     const double SIGMA = 0.1;
     struct Case { const char* name; bool paired; double outerIndex; int views; };
     for (const Shape& shape : SHAPES)
@@ -59,7 +57,7 @@ TEST_CASE("Where a dome or tube is, is as good as the Cramer-Rao bound", "[dome]
 TEST_CASE("Domes and tubes with values drawn from their priors: in every flow errors are what is stated", "[dome][tube][given][slow]")
 {
     CAPTURE(seed());
-    const int TRIALS = trialsOr(12);
+    const int TRIALS = trials(12);
     const Flow flows[] = {
         { "pairs in air", 1, false, true, 1, 6, 0 },
         { "pairs in water", 1, false, true, 1.333, 6, 0 },

@@ -131,7 +131,7 @@ Trial runTrial(const Flow& flow, const Given& given, int seedOfTrial)
 TEST_CASE("Given values drawn from their priors: in every flow errors are what is stated", "[given][slow]")
 {
     CAPTURE(seed());
-    const int TRIALS = std::getenv("TRIALS") ? std::atoi(std::getenv("TRIALS")) : 20;
+    const int TRIALS = trials(20);
     const Flow flows[] = {
         { "pairs in air", 1, false, true, 1, 6, 0 },
         { "pairs in water", 1, false, true, 1.333, 6, 0 },

@@ -6,7 +6,6 @@
 #include "accept/acceptance.hpp"
 #include "console/failure.hpp"
 #include "temporary_file.hpp"
-#include <cstdlib>
 #include <fstream>
 #include <iostream>
 
@@ -15,12 +14,6 @@ using namespace acceptance_scene;
 namespace {
 
 const std::vector<Point3d> ENDS = {{-90, -60, 560}, {90, 50, 640}};
-
-int trialsOf(int otherwise)
-{
-    const char* const given = std::getenv("TRIALS");
-    return given ? std::atoi(given) : otherwise;
-}
 
 struct Rates
 {
@@ -109,12 +102,12 @@ Acceptance onLines(int lines, double longest)
 
 TEST_CASE("A wrong pass at the limit is as rare as two standard uncertainties make it", "[acceptance]")
 {
-    testRates(trialsOf(150), 1240);
+    testRates(scenes::trials(150), 1240);
 }
 
 TEST_CASE("A wrong pass at the limit is as rare as stated: many rigs", "[.monte-carlo][acceptance-many]")
 {
-    testRates(trialsOf(1000), 1241);
+    testRates(scenes::trials(1000), 1241);
 }
 
 TEST_CASE("The decision of ISO 14253-1 at its borders", "[acceptance]")

@@ -263,8 +263,7 @@ TEST_CASE("The true cause of a contradiction is named: a few of each", "[check_m
 TEST_CASE("The true cause of a contradiction is named: many of each", "[.monte-carlo]")
 {
     std::cout << "seed " << scenes::seed() << '\n';
-    const char* const said = std::getenv("TRIALS");
-    const Score sum = matrix(said ? std::atoi(said) : 40, 9000);
+    const Score sum = matrix(scenes::trials(40), 9000);
     CHECK(sum.right() >= 0.95*sum.applicable);
     CHECK(sum.alone == 0);
 }

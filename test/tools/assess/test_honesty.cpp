@@ -499,6 +499,20 @@ void print(const Setup& setup, const Honesty& honesty)
         std::cout << "    " << honesty.why << std::endl;
 }
 
+//! Prints, and fails where the ratios of many trials are not near 1, as far as so many trials tell.
+void checkStated(const Setup& setup, const Honesty& honesty)
+{
+    const double NEAR = 0.1, STANDARD_ERRORS = 4., REFUSED = 0.05;
+    print(setup, honesty);
+    CAPTURE(setup.name());
+    CHECK(honesty.refused <= REFUSED*honesty.trials);
+    for (const auto& entry : honesty.ratios)
+    {
+        CAPTURE(entry.first);
+        CHECK(std::abs(entry.second.value() - 1.) < NEAR + STANDARD_ERRORS*entry.second.standardError());
+    }
+}
+
 std::vector<Setup> allSetups()
 {
     std::vector<Setup> setups;
@@ -585,7 +599,7 @@ TEST_CASE("Every flow, with given values drawn from what is known of them: two h
         if (setup.shared())
             setup.std.wedge = 0.;
         if (setup.flow != Flow::KNOWN_POSES && (!only || setup.name().find(only) != std::string::npos))
-            print(setup, honestyOf(setup, scenes::trials(200), 9000));
+            checkStated(setup, honestyOf(setup, scenes::trials(200), 9000));
     }
 }
 
@@ -594,7 +608,7 @@ TEST_CASE("Every flow states a true +-: two hundred trials", "[.honesty]")
     const char* only = std::getenv("ONLY");     // some of the flows
     for (const Setup& setup : allSetups())
         if (!only || setup.name().find(only) != std::string::npos)
-            print(setup, honestyOf(setup, scenes::trials(200), 9000));
+            checkStated(setup, honestyOf(setup, scenes::trials(200), 9000));
 }
 
 TEST_CASE("Sealed rigs of which the lens is chosen: points and lengths", "[.honesty]")
@@ -607,7 +621,7 @@ TEST_CASE("Sealed rigs of which the lens is chosen: points and lengths", "[.hone
             Setup setup{Flow::SEALED, medium, 2};
             setup.lens = lens;
             if (!only || setup.name().find(only) != std::string::npos)
-                print(setup, honestyOf(setup, scenes::trials(20), 9200));
+                checkStated(setup, honestyOf(setup, scenes::trials(20), 9200));
         }
 }
 
@@ -807,5 +821,5 @@ TEST_CASE("A stated +- is true from rendered images, where corners err together"
 {
     for (const Setup& setup : {Setup{Flow::PAIRS, Medium::AIR, 1, true}, Setup{Flow::HAND_HELD, Medium::AIR, 1, true},
                                Setup{Flow::HAND_HELD, Medium::HOUSING, 1, true}, Setup{Flow::PAIRS, Medium::AIR, 2, true}})
-        print(setup, honestyOf(setup, scenes::trials(20), 9500));
+        checkStated(setup, honestyOf(setup, scenes::trials(20), 9500));
 }

@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // Cameras in domes, as a user has them: images are rendered, calibrated, measured, checked.
+#include "scenes.hpp"
 #include "dome_scene.hpp"
 #include "truth_file.hpp"
 #include <cmath>
-#include <cstdlib>
 #include <cstring>
 #include <iostream>
 #include <opencv2/refract.hpp>
@@ -137,7 +137,7 @@ std::string drawnScene(cv::RNG& random, int number)
 
 TEST_CASE("Domes as delivered, from images: errors of centre and radius are what is stated", "[.monte-carlo]")
 {
-    const int trials = std::getenv("TRIALS") ? std::atoi(std::getenv("TRIALS")) : 20;
+    const int trials = scenes::trials(20);
     double ofCenter = 0, ofRadius = 0;
     for (int trial = 0; trial < trials; trial++)
     {

@@ -7,6 +7,7 @@
 #include "calibrate/rig_model.hpp"
 #include "programs/run_tool.hpp"
 #include "depth_comparison.hpp"
+#include "scenes.hpp"
 #include "stereo/depth_picture.hpp"
 #include <catch2/catch.hpp>
 #include <opencv2/calib3d.hpp>
@@ -185,7 +186,6 @@ TEST_CASE("refract_stereo takes scenes without a mistake without a word", "[tool
 
 TEST_CASE("Of 100 scenes without a mistake at most one is refused or warned of", "[.monte-carlo][stereo]")
 {
-    const char* trials = std::getenv("TRIALS");
-    const Sum sum = tryScenes(trials ? std::stoi(trials) : 100);
+    const Sum sum = tryScenes(scenes::trials(100));
     CHECK(100*(sum.refused + sum.warned) <= sum.scenes);
 }
