@@ -4,9 +4,8 @@
 
 """What compiling costs: builds the library and the tools from nothing, without a compiler cache, and prints the processor time of
 the compiler, in seconds and as a multiple of what one source with Eigen's JacobiSVD takes (a yardstick for any machine), and the
-sources that take longest. Times of a busy machine are too long, their ratio hardly.
-
-Usage: bench/compile_time.py [DIRECTORY [TARGET...]]      default: build/compile_time, library and tools; tests: refract_tests ..."""
+sources that take longest. Times of a busy machine are too long, their ratio hardly."""
+import argparse
 import pathlib
 import resource
 import subprocess
@@ -45,10 +44,14 @@ def yardstick(folder):
                               "-o", str(source) + ".o"])[0]
 
 
-def main(arguments):
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("directory", nargs="?", help="where to build (default: build/compile_time)")
+    parser.add_argument("target", nargs="*", help="what to build, e.g. refract_tests (default: library and tools)")
+    arguments = parser.parse_args()
     root = pathlib.Path(__file__).resolve().parent.parent
-    folder = pathlib.Path(arguments[0] if arguments else root / "build" / "compile_time").resolve()
-    targets = arguments[1:] or ["all"]
+    folder = pathlib.Path(arguments.directory or root / "build" / "compile_time").resolve()
+    targets = arguments.target or ["all"]
     folder.mkdir(parents=True, exist_ok=True)
     log = folder / "seconds.log"
     log.unlink(missing_ok=True)
@@ -71,4 +74,4 @@ def main(arguments):
 if __name__ == "__main__":
     if sys.argv[1:2] == ["--launch"]:
         sys.exit(launch(sys.argv[2], sys.argv[3:]))
-    main(sys.argv[1:])
+    main()
