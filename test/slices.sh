@@ -27,6 +27,13 @@ monte-carlo-3     25  test              $source_files
 monte-carlo-4     25  test              $source_files
 monte-carlo-5     25  test              $source_files
 monte-carlo-6     25  test              $source_files
+honesty-1         25  test              $source_files
+honesty-2         25  test              $source_files
+honesty-3         25  test              $source_files
+honesty-4         25  test              $source_files
+honesty-5         25  test              $source_files
+honesty-6         25  test              $source_files
+honesty-7         25  test              $source_files
 pages             25  test              $source_files doc README.md
 site              10  test,site         doc README.md test/site modules
 opencv-4          25  test,in-tree      modules test/opencv_in_tree.sh test/opencv_source.sh test/opencv_hooks
@@ -156,7 +163,7 @@ monte_carlo() {         # monte_carlo FIRST: of the hidden tests every sixth, wi
   targets="refract_tests refract_program_tests refract_tools_tests"
   build build/release
   for program in $targets; do
-    build/release/bin/"$program" "[.]~[wand-data]" --list-test-names-only | sed "s/^/$program /"
+    build/release/bin/"$program" "[.]~[wand-data]~[flows]" --list-test-names-only | sed "s/^/$program /"
   done | sed -n "$1~6p" >build/hidden.txt
   run "there are hidden tests" test -s build/hidden.txt
   while read -r program name; do
@@ -170,6 +177,25 @@ slice_monte_carlo_3() { monte_carlo 3; }
 slice_monte_carlo_4() { monte_carlo 4; }
 slice_monte_carlo_5() { monte_carlo 5; }
 slice_monte_carlo_6() { monte_carlo 6; }
+# The three of [flows], a quarter of their trials: whole, each takes an hour or more.
+honesty() {             # honesty TEST RIGS...
+  test=$1; shift
+  targets=refract_tools_tests
+  build build/release
+  for rigs in "$@"; do
+    run "$rigs: $test" env ONLY="$rigs" TRIALS=25% build/release/bin/refract_tools_tests "$(echo "$test" | sed 's/,/\\,/g')" -w NoTests
+  done
+}
+true_flows="Every flow states a true +-: two hundred trials"
+drawn_flows="Every flow, with given values drawn from what is known of them: two hundred trials"
+chosen_lenses="Sealed rigs of which the lens is chosen: points and lengths"
+slice_honesty_1() { honesty "$true_flows" pairs hand-held "known poses"; }
+slice_honesty_2() { honesty "$true_flows" sealed "shared wall" robust; }
+slice_honesty_3() { honesty "$drawn_flows" pairs hand-held; }
+slice_honesty_4() { honesty "$drawn_flows" sealed "shared wall" robust; }
+slice_honesty_5() { honesty "$chosen_lenses" "sealed, air"; }
+slice_honesty_6() { honesty "$chosen_lenses" "sealed, bare surface"; }
+slice_honesty_7() { honesty "$chosen_lenses" "sealed, housing in water"; }
 
 # ---- documentation
 slice_pages() {
