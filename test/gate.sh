@@ -53,7 +53,7 @@ done
 
 # What takes long, by turns: the part whose turn it is, and the next ones as long as the hour lasts.
 part_slow_tests() {     # a third of those that take a minute each
-  thirds=$((($(turn_of 102) - 1)/34 + 1))
+  thirds=$(turn_of 3 6)
   [ "$scope" = --all ] || thirds="1 2 3"
   for third in $thirds; do
     suite "slow tests, $third of 3" build/release -L slow -I "$third,,3"
@@ -76,18 +76,26 @@ part_slice() {
     run "the slice $slice" slice_in_time "$slice"
   done
 }
-first=$((($(turn_of 136) - 1)/34))      # the next part after a round of the slices
+parts="slow_tests sanitizers fuzzers"
+case $(turn_of 3 2) in
+  2) parts="sanitizers fuzzers slow_tests" ;;
+  3) parts="fuzzers slow_tests sanitizers" ;;
+esac
+case $(turn_of 2 1) in      # every other time the slice comes first
+  1) parts="slice $parts" ;;
+  2) parts="$parts slice" ;;
+esac
 # Each takes up to 25 minutes where the rest takes 20. A machine twice as slow cuts off what it has begun, and a slower one begins
 # none: a gate that never ends tells nothing.
 [ "$scope" != --all ] || deadline=3200
-for i in 0 1 2 3; do
-  # shellcheck disable=SC2046  # words
-  part=$(echo slow_tests sanitizers fuzzers slice | cut -d ' ' -f $(((first + i) % 4 + 1)))
-  if [ "$scope" != --all ] || [ "$(elapsed)" -lt $((i == 0 ? 2400 : 1500)) ]; then
+latest=2400
+for part in $parts; do
+  if [ "$scope" != --all ] || [ "$(elapsed)" -lt $latest ]; then
     "part_$part"
   else
     echo "left for its turn, as the hour is nearly over: $part"
   fi
+  latest=1500
 done
 deadline=""
 

@@ -58,12 +58,12 @@ inputs_of_slice() {     # inputs_of_slice NAME: as git takes them
   echo "$slices" | awk -v name="$1" '$1 == name { $1 = $2 = $3 = ""; print }'
   echo ":(exclude)test/slices.txt"
 }
-turn_of() {             # turn_of COUNT: from 1 to COUNT, by the number of commits; in a clone that does not have them by the day
+turn_of() {             # turn_of COUNT EVERY: 1 to COUNT, the next one every so many commits; in a clone that does not have them: days
   turn=$(git rev-list --count HEAD)
   [ "$(git rev-parse --is-shallow-repository)" = false ] || turn=$(date +%j | sed 's/^0*//')
-  echo $((turn % $1 + 1))
+  echo $((turn / $2 % $1 + 1))
 }
-slice_of_the_turn() { names_of_slices | sed -n "$(turn_of "$(names_of_slices | wc -l)")p"; }
+slice_of_the_turn() { names_of_slices | sed -n "$(turn_of "$(names_of_slices | wc -l)" 2)p"; }
 
 list_slices() {         # at which commit each was last green, and since when its inputs have changed
   echo
