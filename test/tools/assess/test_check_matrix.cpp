@@ -46,6 +46,13 @@ void tilt(RigModel& rig, int c, double degrees, double azimuth)
         }
 }
 
+void lengthen(RefractiveCamera& camera, double factor)
+{
+    Mat lens = camera.lensParameters().clone();
+    lens(Rect(0, 0, 1, 2)) *= factor;
+    camera.setLensParameters(lens);
+}
+
 Vec3d direction(scenes::Random& random)
 {
     return normalize(Vec3d(random.normal(1.), random.normal(1.), random.normal(1.)));
@@ -79,11 +86,12 @@ std::vector<MistakeMade> mistakesMade()
                    [](RigModel& rig, scenes::Random&) { rig.extrinsics[1].T *= 1.003; }});
     all.push_back({"focus of camera 1 by 0.2 %", {"focal length of camera 1", "focal length changed", "focal length and principal"},
                    {"camera 1", "T of camera", "base line", "square", "thickness", "distance"}, always,
+                   [](RigModel& rig, scenes::Random&) { lengthen(*rig.cameras[0], 1.002); }});
+    all.push_back({"focus of all cameras by 0.1 %", {"focal lengths of all cameras"},
+                   {"T of camera", "base line", "square", "thickness", "distance", "index of the medium"}, several,
                    [](RigModel& rig, scenes::Random&) {
-                       Mat lens = rig.cameras[0]->lensParameters().clone();
-                       lens.at<double>(0) *= 1.002;
-                       lens.at<double>(1) *= 1.002;
-                       rig.cameras[0]->setLensParameters(lens); }});
+                       for (const Ptr<RefractiveCamera>& camera : rig.cameras)
+                           lengthen(*camera, 1.001); }});
     all.push_back({"another pane, 0.5 mm thicker", {"thickness of the window", "another pane"}, PANE, always,
                    [](RigModel& rig, scenes::Random&) {
                        for (int k = 0; k < (int)rig.cameras.size(); k++)

@@ -233,6 +233,43 @@ TEST_CASE("Blurred images are no change, and two changes are not called one", "[
     CHECK_FALSE(two.explained);
 }
 
+TEST_CASE("A focus that changed in all cameras alike is called so", "[rig_check]")
+{
+    scenes::Random random(3015);
+    std::cout << "seed " << scenes::seed() << '\n';
+    const std::vector<Point3d> object = board(9, 6, 30.);
+    for (int cameras : {2, 3})
+        for (double outerIndex : {1., 1.333})
+        {
+            RigModel rig = paperRig(cameras);
+            for (const Ptr<RefractiveCamera>& camera : rig.cameras)
+            {
+                GlassWindow window = camera->window();
+                window.outerIndex = outerIndex;
+                camera->setWindow(window);
+            }
+            RigModel now = rig.clone();
+            for (const Ptr<RefractiveCamera>& camera : now.cameras)
+            {
+                Mat lens = camera->lensParameters().clone();
+                lens(Rect(0, 0, 1, 2)) *= 1.001;
+                camera->setLensParameters(lens);
+            }
+            std::vector<View> views;
+            for (double z : {520., 600., 680.})
+                for (double turn : {-0.4, 0.4})
+                    views.push_back(observe(now, object, Vec3d(0.3, turn, 0.1), Vec3d(-20, 0, z), outerIndex == 1., 0.02, random));
+            const CheckResult result = checkRig({rig, Mat(), 0.02, FREEDOM}, views, FALSE_ALARM);
+            INFO(cameras << " cameras, outer index " << outerIndex << ": " << causesIn(result));
+            CHECK(result.changed);
+            REQUIRE(!result.changes.empty());
+            CHECK(mentions(result.changes[0].name, "focal lengths of all cameras"));
+            CHECK(result.explained);
+            REQUIRE(result.changes[0].values.size() == 1);
+            CHECK(result.changes[0].values[0].value == Approx(0.1).margin(4.*result.changes[0].values[0].std));
+        }
+}
+
 TEST_CASE("How often one pair at 0.1 px shows a tilt of 0.1 degrees", "[.monte-carlo]")
 {
     std::cout << "seed " << scenes::seed() << '\n';

@@ -58,6 +58,16 @@ void turnAxis(RigModel& rig, int owner, const Vec3d& by)
     shareWindow(rig, owner);
 }
 
+void changeLens(RigModel& rig, int c, double factor, const Vec2d& shift = {})
+{
+    Mat lens = rig.cameras[c]->lensParameters().clone();
+    lens.at<double>(0) *= factor;
+    lens.at<double>(1) *= factor;
+    lens.at<double>(2) += shift[0];
+    lens.at<double>(3) += shift[1];
+    rig.cameras[c]->setLensParameters(lens);
+}
+
 //! The camera as it was sees with this motion what it now sees: X -> motion X in its own frame.
 void moveCamera(RigModel& rig, int c, const RigidTransform& motion)
 {
@@ -82,6 +92,7 @@ public:
         addMedium();
         for (int c = 0; c < count_; c++)
             addLens(c);
+        addAllLenses();
         for (int c = 0; c < count_; c++)
             addPlace(c);
         addTarget();
@@ -219,31 +230,32 @@ private:
 
     void addLens(int c)
     {
-        const auto lensBy = [c](double factor, double x, double y) {
-            return [c, factor, x, y](RigModel& rig) {
-                Mat lens = rig.cameras[c]->lensParameters().clone();
-                lens.at<double>(0) *= factor;
-                lens.at<double>(1) *= factor;
-                lens.at<double>(2) += x;
-                lens.at<double>(3) += y;
-                rig.cameras[c]->setLensParameters(lens);
-            };
-        };
         if (isSplined(*rig_.cameras[c]))
             return;
         const std::string of = count_ > 1 ? format(" of camera %d", c + 1) : "";
         const double f = rig_.cameras[c]->lensParameters().at<double>(0);
         const ChangedQuantity pixels{"px", 1., 2, WIDE*f};
         add("focal length" + of + " changed by", c, {percent(WIDE)},
-            [lensBy](RigModel& rig, const VectorXd& d) { lensBy(1. + d[0], 0., 0.)(rig); });
+            [c](RigModel& rig, const VectorXd& d) { changeLens(rig, c, 1. + d[0]); });
         chart("focal length" + of, {""});
         add("principal point" + of + " (lens or sensor shifted) moved by", c, {pixels},
-            [lensBy](RigModel& rig, const VectorXd& d) { lensBy(1., d[0], d[1])(rig); });
+            [c](RigModel& rig, const VectorXd& d) { changeLens(rig, c, 1., Vec2d(d[0], d[1])); });
         chart("principal point" + of, {"x", "y"});
         add("focal length and principal point" + of + " changed by", c, {percent(WIDE), pixels},
-            [lensBy](RigModel& rig, const VectorXd& d) { lensBy(1. + d[0], d[1], d[2])(rig); });
+            [c](RigModel& rig, const VectorXd& d) { changeLens(rig, c, 1. + d[0], Vec2d(d[1], d[2])); });
         for (size_t row = rows.size() - 3; row < rows.size(); row++)
             rows[row].ease = Change::UNLIKELY;
+    }
+
+    //! No chart: those of the cameras have it.
+    void addAllLenses()
+    {
+        if (count_ < 2 || std::any_of(rig_.cameras.begin(), rig_.cameras.end(), [](const auto& camera) { return isSplined(*camera); }))
+            return;
+        add("focal lengths of all cameras (temperature) changed by", -1, {percent(WIDE)}, [](RigModel& rig, const VectorXd& d) {
+            for (int c = 0; c < (int)rig.cameras.size(); c++)
+                changeLens(rig, c, 1. + d[0]); });
+        rows.back().ease = Change::UNLIKELY;
     }
 
     void addPlace(int c)
