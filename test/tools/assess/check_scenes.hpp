@@ -14,6 +14,7 @@
 #include "normal_draw.hpp"
 #include "paper_rig.hpp"
 #include "simulate/render.hpp"
+#include <functional>
 
 namespace check_scenes {
 
@@ -149,9 +150,11 @@ struct Calibrated
 {
     RigModel truth;
     CheckInput input;
+    MatrixXd covariance;                    // of the input, and of the targets' errors
 };
 
-inline Calibrated calibrated(const Scene& scene, scenes::Random& random)
+//! @param asIs makes the rig another one than was given
+inline Calibrated calibrated(const Scene& scene, scenes::Random& random, const std::function<void(RigModel&)>& asIs = [](RigModel&) {})
 {
     Calibrated c;
     c.truth = scene.nominal.clone();
@@ -164,6 +167,7 @@ inline Calibrated calibrated(const Scene& scene, scenes::Random& random)
             given(i, i) = scene.prior(i, i);
     }
     setParameters(c.truth, parametersOf(scene.nominal) + scenes::drawn(scenes::rootOf(given), random));
+    asIs(c.truth);
     const CheckProblem problem({scene.nominal, toMat(scene.prior), SIGMA, 1e8}, calibrationViews(scene, c.truth, random), SIGMA);
     const CheckFit fit = problem.fitUnchanged();
     REQUIRE(std::isfinite(fit.chiSquare));
@@ -178,6 +182,7 @@ inline Calibrated calibrated(const Scene& scene, scenes::Random& random)
     const int count = columnCount(c.truth);
     c.input.rig = fit.rig.clone();
     c.input.rig.targetCovariance.release();
+    c.covariance = C*scale;
     c.input.covariance = toMat(MatrixXd(C.topLeftCorner(count, count)*scale));
     c.input.sigma = SIGMA*std::sqrt(scale);
     c.input.dof = problem.observations();

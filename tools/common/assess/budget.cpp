@@ -108,7 +108,7 @@ std::vector<Source> sourcesOf(const RigCalibration& c)
     if (!targets.empty())
     {
         const int first = columnCount(c.fit.rig);
-        sources.push_back(sourceOf(c.square > 0. ? "square of the board" : "scale of the targets",
+        sources.push_back(sourceOf(c.square > 0. ? SQUARE_OF_BOARD : SCALE_OF_TARGETS,
                                    c.square > 0. ? c.options.std.scale.text(" " + c.unit, c.square)
                                                  : c.options.std.scale.text(" %", 100.), targets, {0}, first,
                                    c.square > 0. ? c.square : 100.));

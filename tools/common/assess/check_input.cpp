@@ -49,6 +49,8 @@ CheckInput checkInputOf(const Calibration& calibration, const std::string& filen
     input.rig = modelOf(calibration);
     input.rig.windows = calibration.windows;
     input.covariance = calibration.covariance;
+    input.sources = calibration.provenance.sources;
+    input.square = calibration.square;
     input.sigma = pixelSigma > 0 ? pixelSigma : pixelSigmaOf(calibration);
     input.dof = pixelSigma > 0 || !(calibration.dof > 0) ? EXACT : calibration.dof;
     if (!(input.sigma > 0))
@@ -78,6 +80,13 @@ CheckInput withWedges(const CheckInput& input)
     for (int i = 0; i < input.covariance.rows; i++)
         for (int j = 0; j < input.covariance.cols; j++)
             result.covariance.at<double>(columns[i], columns[j]) = input.covariance.at<double>(i, j);
+    for (UncertaintySource& source : result.sources)
+    {
+        const Mat old = source.factor;
+        source.factor = Mat(columnCount(result.rig), old.cols, CV_64F, Scalar(0));
+        for (int i = 0; i < old.rows; i++)
+            old.row(i).copyTo(source.factor.row(columns[i]));
+    }
     return result;
 }
 

@@ -4,6 +4,7 @@
 #ifndef REFRACT_TOOLS_CHECK_INPUT_HPP
 #define REFRACT_TOOLS_CHECK_INPUT_HPP
 
+#include "calibrate/provenance.hpp"
 #include "calibrate/rig_model.hpp"
 #include "measure/eigen_matrix.hpp"
 
@@ -16,6 +17,8 @@ struct CheckInput
     cv::Mat covariance;         //!< of its parameters, as Fit::covariance; empty: they are exact
     double sigma;               //!< of a pixel coordinate
     double dof;                 //!< degrees of freedom of sigma
+    std::vector<UncertaintySource> sources = {};    //!< of the covariance, as far as the file has them
+    double square = 0.;                             //!< of the board that it was made with; 0: not known
 };
 
 /** From what a calibration file says. @param pixelSigma given by the user; 0: that of the residuals.

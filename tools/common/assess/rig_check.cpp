@@ -89,6 +89,8 @@ private:
             name();
         addWindows();
         addTurns();
+        if (!isScene_ && asCalibrated_.rows)
+            result_.unseen = unseenErrors(input_, *problem_, asCalibrated_, result_.dof, result_.critical, CERTAIN_POWER);
     }
 
     void requireGlass() const

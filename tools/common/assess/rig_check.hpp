@@ -6,6 +6,7 @@
 
 #include "assess/changed_value.hpp"
 #include "assess/check_input.hpp"
+#include "assess/unseen_errors.hpp"
 #include "calibrate/rig_data.hpp"
 #include "measure/view_observations.hpp"
 
@@ -63,10 +64,13 @@ struct CheckResult
     double critical;                    //!< probability below which one hypothesis is a change
     double noiseHere;                   //!< of the images by themselves; 0: too few points tell
     ChartedScore charted;
+    std::vector<UnseenError> unseen;    //!< of a target's images
     //! From 0: of a scene, cameras of which each alone explains it by its turn as well as the best does. Their changes are the first.
     std::vector<int> mayHaveTurned;
     bool isMixup = false;               //!< the best are images that are not what they are given for
 };
+
+const double CERTAIN_POWER = 0.95;      //!< probability with which a change must show for its absence to be said
 
 //! Throws Failure if no view has an image through a window, or a target's pose cannot be found. @param unit of lengths, for the texts
 CheckResult checkRig(const CheckInput& input, const std::vector<View>& views, double falseAlarm, const std::string& unit = "");

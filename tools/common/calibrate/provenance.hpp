@@ -49,6 +49,10 @@ struct CalibratedVolume
     bool contains(const cv::Point3d& X) const;
 };
 
+const char* const SQUARE_OF_BOARD = "square of the board";             //!< names of sources
+const char* const SCALE_OF_TARGETS = "scale of the targets";           //!< in %
+const char* const INDEX_OF_MEDIUM = "index of the scene's medium";
+
 /** What one given value contributes to the covariance of the calibration: factor*factor^T. A standard deviation of the value moves
 the parameters by a column; the images' own part is what is left of the covariance. */
 struct UncertaintySource
@@ -56,9 +60,9 @@ struct UncertaintySource
     std::string name, given;        //!< "thickness, camera 1", "0.1 mm"
     double std = 0.;                //!< of each column's value; 0: they differ
     cv::Mat factor;                 //!< rows of the covariance
-};
 
-const char* const INDEX_OF_MEDIUM = "index of the scene's medium";     //!< name of its source
+    bool isOfTarget() const { return name == SQUARE_OF_BOARD || name == SCALE_OF_TARGETS; }
+};
 
 struct Provenance
 {

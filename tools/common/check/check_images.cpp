@@ -8,6 +8,7 @@
 #include "console/table.hpp"
 #include "match/depth_range.hpp"
 #include "match/scene_check.hpp"
+#include <algorithm>
 
 using namespace cv::refract;
 
@@ -30,7 +31,11 @@ void addPlacement(double placement, const std::vector<View>& views, CheckInput& 
 CheckResult checkViews(const CheckOptions& o, const std::vector<View>& views, const Calibration& calibration, CheckInput& input)
 {
     addPlacement(o.placement, views, input);
-    return checkRig(input, views, o.falseAlarmOfCheck(), calibration.unit);
+    CheckResult result = checkRig(input, views, o.falseAlarmOfCheck(), calibration.unit);
+    const bool isOtherBoard = o.target.square > 0. && calibration.square > 0. && o.target.square != calibration.square;
+    const auto isShown = [&](const UnseenError& error) { return error.isOfTarget ? isOtherBoard : o.newPane; };
+    result.unseen.erase(std::remove_if(result.unseen.begin(), result.unseen.end(), isShown), result.unseen.end());
+    return result;
 }
 
 CheckResult checkMatches(const CheckOptions& o, const SceneMatches& matches, const Calibration& calibration, CheckInput& input)

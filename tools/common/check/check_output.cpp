@@ -5,6 +5,7 @@
 #include "calibrate/window_face.hpp"
 #include "console/table.hpp"
 #include <algorithm>
+#include <cmath>
 #include <iostream>
 
 using namespace cv::refract;
@@ -13,13 +14,11 @@ namespace tools {
 
 namespace {
 
-const double CERTAIN = 0.95;            // probability with which --detect degrees must show
-
 //! How many times as many images would show the tilt, or 0 if no number would.
 int imagesNeeded(const WindowCheck& window, const CheckResult& result, double degrees)
 {
     for (int n = 2; n <= 10000; n++)
-        if (powerOf(window, result, degrees, 1./n) >= CERTAIN)
+        if (powerOf(window, result, degrees, 1./n) >= CERTAIN_POWER)
             return n;
     return 0;
 }
@@ -30,7 +29,7 @@ double tiltThatShows(const WindowCheck& window, const CheckResult& result)
     const double CEILING = 90.;
     for (double decade = 1e-4; decade < CEILING; decade *= 10.)
         for (int digit = 1; digit < 10; digit++)
-            if (powerOf(window, result, digit*decade) >= CERTAIN)
+            if (powerOf(window, result, digit*decade) >= CERTAIN_POWER)
                 return digit*decade;
     return 0.;
 }
@@ -50,7 +49,7 @@ std::string whyNotOfScene(const CheckResult& result, const CheckOptions& o)
     if (result.turns.empty())
         return "the images do not tell how the cameras stand to each other: " + more;
     for (const TurnCheck& turn : result.turns)
-        if (powerOf(turn, result, o.detect) < CERTAIN && !o.hasHistory())
+        if (powerOf(turn, result, o.detect) < CERTAIN_POWER && !o.hasHistory())
             return format("camera %d: these images would show a turn by %g deg with a probability of only %.0f %%, so 'unchanged' cannot "
                           "be said; ", turn.camera + 1, o.detect, 100.*powerOf(turn, result, o.detect)) + more + ", or ask for a larger "
                 "--detect";
@@ -145,7 +144,7 @@ std::string whyNot(const CheckResult& result, const CheckOptions& o, const Check
     for (const WindowCheck& window : result.windows)
     {
         const double power = powerOf(window, result, o.detect);
-        if (power >= CERTAIN || o.hasHistory())
+        if (power >= CERTAIN_POWER || o.hasHistory())
             continue;
         const int times = imagesNeeded(window, result, o.detect);
         const bool pairs = o.images.anyDirect(), commonMotion = pairs && o.placement > 0;    // which more pairs share
@@ -174,6 +173,16 @@ std::string verdictOf(const CheckResult& result, const std::string& why)
     return !why.empty() ? CANNOT_TELL : !result.changed ? "unchanged" : windows ? "moved" : "changed";
 }
 
+std::string unseenBy(const CheckResult& result)
+{
+    std::string text;
+    for (const UnseenError& error : result.unseen)
+        text += (text.empty() ? "" : ", ") + error.of + (error.isOfTarget ? " (and with it all lengths)" : "") + (text.empty() ? " wrong" : "")
+                + (std::isfinite(error.least) ? format(" by up to %.2g", error.least) + (error.unit.empty() ? "" : " " + error.unit)
+                                              : std::string(" by any amount"));
+    return text.empty() ? "" : "Not shown, if the calibration had it already: " + text + ".";
+}
+
 Json checkJson(const CheckResult& result, const CheckOptions& o, const CheckInput& input, const std::string& verdict,
                const std::string& why)
 {
@@ -186,12 +195,15 @@ Json checkJson(const CheckResult& result, const CheckOptions& o, const CheckInpu
     for (const TurnCheck& turn : result.turns)
         turns.append({{"camera", turn.camera + 1}, {"name", turn.name}, {"std_deg", turn.stdDeg},
                       {"probability_if_unchanged", turn.probability}, {"detection_probability", powerOf(turn, result, o.detect)}});
+    Json unseen = Json::array();
+    for (const UnseenError& error : result.unseen)      // of infinity, which the file has as null, no error shows
+        unseen.append({{"of", error.of}, {"least_shown", error.least}, {"unit", error.unit}});
     std::vector<int> mayHaveTurned;
     for (int camera : result.mayHaveTurned)
         mayHaveTurned.push_back(camera + 1);
     return {
         {"verdict", verdict}, {"why", why}, {"windows", windows}, {"turns", turns}, {"changes", changes},
-        {"may_have_turned", mayHaveTurned}, {"explained", result.explained},
+        {"may_have_turned", mayHaveTurned}, {"unseen", unseen}, {"explained", result.explained},
         {"false_alarm", o.falseAlarm}, {"detect_deg", o.detect}, {"sigma_px", input.sigma}, {"sigma_seen_px", result.sigmaSeen}};
 }
 
@@ -222,6 +234,8 @@ void printCheck(const CheckResult& result, const CheckOptions& o, const CheckInp
                + format(". False alarms: %g%s.", o.falseAlarm, o.hasHistory() ? ", of the charts and this check together" : ""));
     if (o.isOfScene())
         printScene(images.scene, input.rig.cameras.size() == 2);
+    else
+        printLines(unseenBy(result));
 }
 
 } // namespace tools

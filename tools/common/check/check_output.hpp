@@ -23,6 +23,9 @@ const char CANNOT_TELL[] = "cannot tell";
 //! In a word or two. @param why of whyNot
 std::string verdictOf(const CheckResult& result, const std::string& why);
 
+//! A sentence of errors that are as they were in the calibration; empty: all would show.
+std::string unseenBy(const CheckResult& result);
+
 Json checkJson(const CheckResult& result, const CheckOptions& options, const CheckInput& input, const std::string& verdict,
                const std::string& why);
 

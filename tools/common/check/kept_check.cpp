@@ -68,9 +68,10 @@ void KeptCheck::add(const CheckResult& check, const CheckInput& input, const Che
     result_ = chartHistory(history_, covariance_, (1. - SHARE_OF_CHECK)*options_.falseAlarm);
 }
 
-void KeptCheck::write(const std::string& verdict, bool isGood) const
+void KeptCheck::write(const std::string& verdict, bool isGood, const std::string& unseen) const
 {
-    const std::string page = historyPage(history_, result_, covariance_, {options_.calibration, options_.falseAlarm, verdict, isGood});
+    const std::string page = historyPage(history_, result_, covariance_,
+                                         {options_.calibration, options_.falseAlarm, verdict, isGood, unseen});
     writeText(options_.pageFile(), page);
     writeHistory(options_.history, history_);
 }

@@ -30,8 +30,8 @@ public:
 
     bool isAlarm() const { return result_.isAlarm(); }
 
-    //! @param verdict of all
-    void write(const std::string& verdict, bool isGood) const;
+    //! @param verdict of all. @param unseen of unseenBy
+    void write(const std::string& verdict, bool isGood, const std::string& unseen) const;
     void print() const;
     Json json() const;
 

@@ -171,6 +171,8 @@ std::string historyPage(const CheckHistory& history, const HistoryResult& result
     page.set("broken", pageList(history.broken));
     page.set("has_causes", !result.causes.empty());
     page.set("causes", causesIn(result, history));
+    page.set("has_unseen", !facts.unseen.empty());
+    page.set("unseen", facts.unseen);
     page.set("t2", t2Figure(history, result));
     page.set("figures", figures(history, result, covariance));
     page.set("estimates", estimateRows(history, result, covariance));

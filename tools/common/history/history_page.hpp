@@ -15,6 +15,7 @@ struct HistoryFacts
     double falseAlarm;
     std::string verdict;                //!< of the last check
     bool isGood;
+    std::string unseen;                 //!< what no such check shows; may be empty
 };
 
 //! The charts as one HTML page that needs no other file. Throws Failure if gnuplot fails.
