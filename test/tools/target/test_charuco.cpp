@@ -110,7 +110,20 @@ TEST_CASE("A ChArUco board of another size than --size is told by where its mark
 
 TEST_CASE("A ChArUco board of the right columns with a marker in the first corner is told of its rows", "[charuco]")
 {
-    for (const char* said : {"6x6", "6x4"})         // squares: as many columns as rows, and more
-        CHECK_THAT(failure("6x5", true, false, said), Catch::Contains("a marker in the first corner, which OpenCV's boards with an odd "
-                                                                      "number of rows of squares do not have"));
+    CHECK_THAT(failure("6x5", true, false, "6x6"), Catch::Contains("a marker in the first corner, which OpenCV's boards with an odd "
+                                                                   "number of rows of squares do not have"));
+}
+
+TEST_CASE("A ChArUco board with more rows than --size has the same markers in the same places, and is told all the same", "[charuco]")
+{
+    for (const char* size : {"8x6", "8x5", "7x6", "7x5"})       // squares: an even and an odd number of rows, and of columns
+        for (bool drawn : {false, true})
+            for (bool said : {false, true})
+                for (int fewer : {1, 2})
+                {
+                    CAPTURE(size, drawn, said, fewer);
+                    CHECK_THAT(failure(size, drawn, said, {size[0], 'x', char(size[2] - fewer)}),
+                               Catch::Contains(cv::format("has %d rows of squares or more", size[2] - '0' + 1))
+                               && Catch::Contains(std::string("give --size=") + size));
+                }
 }

@@ -84,11 +84,11 @@ double misfit(const MarkerCorners& corners, const std::vector<int>& ids, cv::Siz
 }
 
 const double WRONG = 0.15, RIGHT = 0.05;        // misfits: what a lens bends is far less than a square
+const int MOST = 60;                            // columns or rows of squares
 
 //! How many columns of squares the markers have, by where they are; 0: that is not told.
 int columnsOf(const MarkerCorners& corners, const std::vector<int>& ids)
 {
-    const int MOST = 60;
     for (int columns = 2; columns <= MOST; columns++)
         for (bool legacy : {false, true})
         {
@@ -100,17 +100,31 @@ int columnsOf(const MarkerCorners& corners, const std::vector<int>& ids)
 }
 
 //! How many rows of squares are seen to have markers, if these are in so many columns.
-int rowsOf(const std::vector<int>& ids, int columns)
+int rowsOf(const std::vector<int>& ids, int columns, bool legacy = false)
 {
-    int last = -1;
-    const std::vector<cv::Point> places = markerSquares(cv::Size(columns, *std::max_element(ids.begin(), ids.end()) + 1), false);
-    for (int id : ids)
-        last = std::max(last, places[id].y);
-    return last + 1;
+    const int last = *std::max_element(ids.begin(), ids.end());
+    return markerSquares(cv::Size(columns, 2*(last + 1)), legacy)[last].y + 1;
+}
+
+//! Those of fewer rows have the same numbers in the same places.
+void requireNoMoreRows(const MarkerCorners& corners, const std::vector<int>& ids, cv::Size squares)
+{
+    if (ids.empty() || rowsOf(ids, squares.width) > MOST)
+        return;
+    for (bool legacy : {false, true})
+    {
+        const double off = misfit(corners, ids, cv::Size(squares.width, MOST), legacy);
+        const int rows = rowsOf(ids, squares.width, legacy);
+        if (off > 0. && off < RIGHT && rows > squares.height)
+            throw Failure(cv::format("this ChArUco board has %d rows of squares or more, and %d with --size=%dx%d: give --size=%dx%d, or how "
+                                     "many rows of inner corners there are", rows, squares.height, squares.width - 1, squares.height - 1,
+                                     squares.width - 1, rows - 1));
+    }
 }
 
 void requireLayout(const MarkerCorners& corners, const std::vector<int>& ids, cv::Size squares, bool legacy)
 {
+    requireNoMoreRows(corners, ids, squares);
     if (!(misfit(corners, ids, squares, legacy) > WRONG))
         return;
     if (squares.height % 2 == 0 && misfit(corners, ids, squares, !legacy) < RIGHT)
