@@ -174,6 +174,33 @@ TEST_CASE("A far wall that is tilted by 30 to 50 degrees is found from one that 
         }
 }
 
+TEST_CASE("A far wall that is tilted is found from pairs, however far it is", "[calibrate][far_wall]")
+{
+    // Pairs tell the normal and where the boards are; a fit that begins with the window on the camera leaves both.
+    int count = 0, right = 0;
+    for (const Tank& tank : { Tank{ 2500, 300, true, 0.4, 0.75 }, Tank{ 5000, 380, true, 0.3, 0.7 }, Tank{ 8000, 420, true, 0.3, 0.65 },
+                              Tank{ 12000, 480, true, 0, 0.45 } })
+        for (int seed = 1; seed <= trials(8); seed++)
+        {
+            Random random(7700 + seed);
+            const RigTruth rig = makeTank(tank, 1, random);
+            TankCall call(rig, makeTankScene(tank, rig, random, 5), true);
+            count++;
+            try
+            {
+                call.run(GLASS_FREE_DISTANCE);
+            }
+            catch (const CalibrationError& e)
+            {
+                UNSCOPED_INFO(e.err);
+                continue;
+            }
+            right += call.wrongBy(rig) < SURE;
+            UNSCOPED_INFO("focal length " << tank.focal << ", seed " << seed << ", off by " << call.wrongBy(rig));
+        }
+    CHECK(right == count);
+}
+
 TEST_CASE("Three standard deviations of a far wall's distance are where the squares are larger by nine variances", "[calibrate][far_wall]")
 {
     // Where derivatives at the best distance have three standard deviations, they are larger by as little as 2.6.

@@ -206,6 +206,15 @@ int bestObserver(const Rig& rig, int owner, const RigViews& views)
     return best;
 }
 
+//! With the normal and the poses that pairs tell, from several distances: from the camera on, a fit may not reach a far window.
+std::vector<Minimum> distanceMinima(const Camera& camera, const RigViews& pairs, int flags)
+{
+    std::vector<RigStart> starts;
+    for (const Rig& rig : atAllDistances({ { camera }, { 0 }, { Pose() } }, pairs, flags))
+        starts.push_back({ rig, {} });
+    return multiStart(starts, { { FEW_VIEWS, COARSE } }, pairs, flags & GLASS_FREE_DISTANCE);
+}
+
 /** The window of one owner.
 @param found what poses a search for it has found: of a window whose distance was not known, others would hide behind it */
 GlassWindow startWindow(const Rig& rig, int owner, const RigViews& views, const std::vector<Pose>& poses, int flags,
@@ -215,25 +224,38 @@ GlassWindow startWindow(const Rig& rig, int owner, const RigViews& views, const 
     if ((flags & GLASS_FIX_NORMAL) || !rig.cameras[owner].refracts())
         return window;
     // With poses known the centre of a dome has one minimum, which the fit reaches from the given place.
-    const bool areKnown = hasCenter(window.shape) ? hasPairs(rig, owner, views, poses)
-                                                  : normalOfPairs(rig, owner, views, poses, flags, window.normal);
-    if (areKnown || (flags & GLASS_FREE_INTRINSICS))
+    const bool isRound = hasCenter(window.shape);
+    const bool areKnown = isRound ? hasPairs(rig, owner, views, poses)
+                                  : normalOfPairs(rig, owner, views, poses, flags, window.normal);
+    if (areKnown ? isRound || !(flags & GLASS_FREE_DISTANCE) : (flags & GLASS_FREE_INTRINSICS) != 0)
         return window;
     const int best = bestObserver(rig, owner, views);
     if (best < 0)
         return window;
     std::vector<int> which;
-    const RigViews seen = viewsThrough(views, best, which);
+    RigViews seen = viewsThrough(views, best, which);
     if (which.empty())
         return window;
     const GlassWindow seenByBest = transferred(window, rig.extrinsics[owner], rig.extrinsics[best]);
     if (!(seenByBest.normal[2] > 0 && distanceToSurface(seenByBest) >= 0))
         return window;
     const double givenDistance = window.distance;
-    const std::vector<Minimum> minima = windowMinima(withWindow(rig.cameras[best], seenByBest), seen, flags);
-    const Minimum& minimum = minima[0];
+    const Camera camera = withWindow(rig.cameras[best], seenByBest);
     std::vector<OtherMinimum> others(1);
-    describeOther(minima, others);
+    std::vector<Minimum> minima;
+    if (areKnown)
+    {
+        const PixelViews direct = withPredicted(rig, best, views, poses, flags);
+        for (size_t i = 0; i < which.size(); i++)
+            seen.cameras[0].direct[i] = direct[which[i]];
+        minima = distanceMinima(camera, seen, flags);
+    }
+    else
+    {
+        minima = windowMinima(camera, seen, flags);
+        describeOther(minima, others);
+    }
+    const Minimum& minimum = minima[0];
     window = transferred(minimum.rig.cameras[0].window(), rig.extrinsics[best], rig.extrinsics[owner]);
     if (!(flags & GLASS_FREE_DISTANCE))
         window.distance = givenDistance;
