@@ -90,6 +90,31 @@ TEST_CASE("Targets of any unit have their pose", "[pnp]")
         }
 }
 
+TEST_CASE("A target in space that is small in the image has its pose", "[pnp]")
+{
+    Random random(212);
+    const GlassWindow steep({ 0.4, 0.1, 1 }, 20, 1.52, 100, 1.333);
+    for (const GlassWindow& window : { GlassWindow(), steep })
+        for (double size : { 20., 5., 2., 0.5, 0.02 })
+            for (int count : { 5, 6, 18 })
+            {
+                const Matx33d K(12000, 0, 1223.5, 0, 12000, 1023.5, 0, 0, 1);
+                const Ptr<RefractiveCamera> camera = RefractiveCamera::create(K, noArray(), window);
+                std::vector<Point3d> object;
+                for (int i = 0; i < count; i++)
+                    object.push_back(Point3d(size*random.vector(0.5)));
+                const Vec3d rvec = random.vector(1), tvec(random.uniform(-20, 20), random.uniform(-20, 20), random.uniform(500, 900));
+                CAPTURE(window.outerIndex, size, count, seed());
+                Vec3d found, t;
+                REQUIRE(refractiveSolvePnP(object, seen(object, rvec, tvec, camera, random, 0), camera, found, t));
+                CHECK(norm(t - tvec) < 1e-5*norm(tvec));
+                Matx33d R, truth;
+                Rodrigues(found, R);
+                Rodrigues(rvec, truth);
+                CHECK(norm(R - truth) < 1e-5);
+            }
+}
+
 TEST_CASE("A wide lens sees the target beyond 90 degrees", "[pnp]")
 {
     Random random(210);

@@ -94,6 +94,20 @@ double radiusOf(const std::vector<Point3d>& points)
     return radius;
 }
 
+/** SQPnP throws where an image is small (calib3d's POINT_VARIANCE_THRESHOLD). So small, it is to first order the magnified one of a
+target that is so many times nearer; what is left a fit mends. */
+double magnificationFor(const std::vector<Point2d>& normalized)
+{
+    const double LEAST_VARIANCE = 1e-4;
+    Point2d mean;
+    for (const Point2d& p : normalized)
+        mean += p*(1./(double)normalized.size());
+    double variance = 0;
+    for (const Point2d& p : normalized)
+        variance += (p - mean).dot(p - mean)/(double)normalized.size();
+    return std::sqrt(std::max(1., LEAST_VARIANCE/std::max(variance, DBL_MIN)));
+}
+
 std::vector<Pose> closedFormPoses(const Camera& camera, const ImagePoints& points)
 {
     const CentralView view(camera, points);
@@ -107,13 +121,19 @@ std::vector<Pose> closedFormPoses(const Camera& camera, const ImagePoints& point
     for (const Point3d& p : view.object)
         object.push_back(p*(1/unit));
     std::vector<Mat> rvecs, tvecs;
-    solvePnPGeneric(object, view.normalized, Matx33d::eye(), noArray(), rvecs, tvecs, false,
+    const double magnification = rank == 2 ? 1. : magnificationFor(view.normalized);
+    std::vector<Point2d> normalized;
+    for (const Point2d& p : view.normalized)
+        normalized.push_back(magnification*p);
+    solvePnPGeneric(object, normalized, Matx33d::eye(), noArray(), rvecs, tvecs, false,
                     rank == 2 ? SOLVEPNP_IPPE : SOLVEPNP_SQPNP);
     for (size_t i = 0; i < rvecs.size(); i++)
     {
-        if (checkRange(rvecs[i]) && checkRange(tvecs[i]))
-            poses.push_back(poseOf({ back*rotationMatrix(Vec3d(rvecs[i].ptr<double>())),
-                                     back*(unit*Vec3d(tvecs[i].ptr<double>())) + view.bearings.centre }));
+        if (!checkRange(rvecs[i]) || !checkRange(tvecs[i]))
+            continue;
+        Vec3d t(tvecs[i].ptr<double>());
+        t[2] *= magnification;
+        poses.push_back(poseOf({ back*rotationMatrix(Vec3d(rvecs[i].ptr<double>())), back*(unit*t) + view.bearings.centre }));
     }
     return poses;
 }
