@@ -109,6 +109,23 @@ TEST_CASE("A wrong name, or what does not belong to it, is refused in calls and 
                Contains("distortion_coefficients has 4 values; LENSMODEL_CAHVOR has 5"));
 }
 
+TEST_CASE("A file says by the words of ROS and of OpenCV's sample that its lens is a fisheye", "[camera]")
+{
+    const auto modelOf = [](const String& line) {
+        FileStorage out(".yml", FileStorage::WRITE | FileStorage::MEMORY);
+        out << "camera_matrix" << Mat(Matx33d(800, 0, 320, 0, 800, 240, 0, 0, 1));
+        out << "distortion_coefficients" << Mat(Vec4d(-0.02, 0.01, 0.001, -0.001));
+        const FileStorage in(out.releaseAndGetString() + line + "\n", FileStorage::READ | FileStorage::MEMORY);
+        return RefractiveCamera::read(in.root())->lensModel();
+    };
+    for (const char* line : { "distortion_model: equidistant", "distortion_model: fisheye", "fisheye_model: 1" })
+        CHECK(modelOf(line) == "fisheye");
+    for (const char* line : { "", "distortion_model: plumb_bob", "fisheye_model: 0", "lens_model: opencv" })
+        CHECK(modelOf(line) == "opencv");
+    for (const char* line : { "distortion_model: division", "distortion_model: 3" })
+        CHECK_THAT(thrown([&] { modelOf(line); }), Contains("OpenCV has no lens for its distortion_model"));
+}
+
 TEST_CASE("The names of lens models are those that make lenses", "[camera]")
 {
     const std::vector<String> names = RefractiveCamera::lensModels();

@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "formats/foreign_file.hpp"
+#include "camera/camera.hpp"
 #include "formats/colmap_cameras.hpp"
 
 #include <opencv2/core/affine.hpp>
 #include <algorithm>
-#include <map>
 
 /* Programs write the same numbers by other names. A dialect is one way to name those of a camera; a file may have a camera at its top
 level, in maps and lists below it, and several beside each other whose names end in 1 and 2, or in left and right. */
@@ -27,12 +27,6 @@ const Names MATRICES = {"camera_matrix", "Camera_Matrix", "cameraMatrix", "Camer
                         "intrinsic_matrix", "matrix"};
 const Names DISTORTIONS = {"distortion_coefficients", "Distortion_Coefficients", "distCoeffs", "dist_coeffs", "dist_coeff", "distCoeff",
                            "distortion_coeffs", "DistCoeffs", "dist_coefs", "dist", "D", "distortionCoeff", "distortions", "distortion"};
-
-//! What other programs call OpenCV's lens models; DepthAI numbers them.
-const std::map<std::string, std::string> LENS_MODELS = {
-    {"plumb_bob", "opencv"}, {"rational_polynomial", "opencv"}, {"thin_prism", "opencv"}, {"opencv", "opencv"}, {"radtan", "opencv"},
-    {"brown", "opencv"}, {"none", "opencv"}, {"cameraType 0", "opencv"}, {"equidistant", "fisheye"}, {"fisheye", "fisheye"},
-    {"equi", "fisheye"}, {"kannala_brandt", "fisheye"}, {"cameraType 1", "fisheye"}};
 
 //! What names of cameras beside each other end in.
 const Names ENDINGS[] = {{""}, {"1", "2"}, {"_1", "_2"}, {"_left", "_right"}, {"Left", "Right"}, {"L", "R"}, {"_l", "_r"}, {"_L", "_R"},
@@ -81,10 +75,11 @@ std::string lensModelIn(const Json& map)
         return "";
     const Json& value = map.at(key);
     const std::string said = value.isNumber() ? cv::format("%g", value.asNumber()) : value.asText();
-    const auto model = LENS_MODELS.find(value.isNumber() ? key + " " + said : said);
-    if (model == LENS_MODELS.end())
+    const std::string name = said == "0" ? "opencv" : said == "1" ? "fisheye" : said;       // DepthAI numbers them
+    const std::string model = cv::refract::lensModelCalled(name);
+    if (model.empty())
         throw Failure("its " + key + " '" + said + "' has no equal among OpenCV's");
-    return model->second;
+    return model;
 }
 
 //! OpenCV's own names and those of programs that took them over.

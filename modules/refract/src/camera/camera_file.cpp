@@ -6,6 +6,7 @@
 #include "camera/camera.hpp"
 #include "camera/cameramodel.hpp"
 #include "camera/storage.hpp"
+#include <map>
 
 /* RefractiveCamera <-> files: OpenCV's YAML/XML/JSON keys plus glass_window, and mrcal's .cameramodel. */
 
@@ -20,6 +21,30 @@ void Camera::write(FileStorage& fs) const
     window_.write(fs);
 }
 
+String lensModelCalled(const String& name)
+{
+    static const std::map<String, String> names = {
+        { "opencv", "opencv" }, { "plumb_bob", "opencv" }, { "rational_polynomial", "opencv" }, { "thin_prism", "opencv" },
+        { "radtan", "opencv" }, { "brown", "opencv" }, { "none", "opencv" },
+        { "fisheye", "fisheye" }, { "equidistant", "fisheye" }, { "equi", "fisheye" }, { "kannala_brandt", "fisheye" } };
+    const auto found = names.find(name);
+    return found == names.end() ? String() : found->second;
+}
+
+static String lensModelIn(const FileNode& node, const String& filename)
+{
+    if (!node["lens_model"].empty())
+        return (String)node["lens_model"];
+    const FileNode ofRos = node["distortion_model"], ofSample = node["fisheye_model"];      // that of OpenCV, camera_calibration
+    if (ofRos.empty())
+        return ofSample.isInt() && (int)ofSample != 0 ? "fisheye" : "opencv";
+    const String model = ofRos.isString() ? lensModelCalled((String)ofRos) : String();
+    if (model.empty())
+        CV_Error_(Error::StsParseError, ("%s: OpenCV has no lens for its distortion_model; it has for plumb_bob, rational_polynomial and "
+                                         "equidistant", filename.c_str()));
+    return model;
+}
+
 static Ptr<RefractiveCamera> readNode(const FileNode& node, const String& filename)
 {
     GlassWindow window;
@@ -29,8 +54,7 @@ static Ptr<RefractiveCamera> readNode(const FileNode& node, const String& filena
     const Mat D = readStoredMatrix(node, "distortion_coefficients", filename);
     if (K.empty())
         CV_Error_(Error::StsParseError, ("%s has no camera_matrix", filename.c_str()));
-    const String model = node["lens_model"].empty() ? String("opencv") : (String)node["lens_model"];
-    const Ptr<Lens> lens = readLens(model, K, D, "camera_matrix", "distortion_coefficients");
+    const Ptr<Lens> lens = readLens(lensModelIn(node, filename), K, D, "camera_matrix", "distortion_coefficients");
     Ptr<RefractiveCamera> camera = makePtr<Camera>(lens, window);
     if (node["image_width"].isInt() && node["image_height"].isInt())
         camera->setImageSize(Size((int)node["image_width"], (int)node["image_height"]));
