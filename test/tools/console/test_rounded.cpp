@@ -3,6 +3,7 @@
 
 // Numbers beside their uncertainty, and letters of any encoding.
 #include "console/numbers.hpp"
+#include "console/table.hpp"
 #include "console/utf8.hpp"
 #include <catch2/catch.hpp>
 
@@ -18,6 +19,10 @@ TEST_CASE("Numbers have two digits of their uncertainty, in any unit", "[tools][
     CHECK(rounded(0.01, 3, true) == "+0.010");
     CHECK(rounded(-0.0004, 3, true) == "0.000");            // zero has no sign
     CHECK(rounded(-0.0006, 3, true) == "-0.001");
+    CHECK(plusMinus(7.04, 0.02) == "7.040 +- 0.020");
+    CHECK(plusMinus(150.9007, 108.6) == "150 +- 110");      // not 150.9 +- 1.1e+02
+    CHECK(plusMinus(-1.9968e-06, 6.8e-06) == "-0.0000020 +- 0.0000068");
+    CHECK(plusMinus(1.5, 0.) == "1.500000 +- 0.000000");
 }
 
 TEST_CASE("What is not UTF-8 is known, and replaced", "[tools][rounded]")

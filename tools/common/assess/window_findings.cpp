@@ -85,8 +85,8 @@ void checkCentre(const RigCalibration& c, int camera, CollectedFindings& f)
               + (c.data.countPairs(camera) ? "take more pairs, with the board all over the image"
                  : "take pairs (the board not moved between an image without and one with the " + round.shape + ")"));
     if (c.options.flags & GLASS_FREE_RADIUS && windowStd(c.fit, camera).radius > WEAK_RELATIVE*window.radius)
-        f.add(A_PARAMETER, prefixOf(c, camera) + format("the radius is weakly determined: %.4g +- %.2g %s; give that of the drawing by "
-                                                        "--radius", window.radius, windowStd(c.fit, camera).radius, c.unit.c_str()));
+        f.add(A_PARAMETER, prefixOf(c, camera) + "the radius is weakly determined: " + plusMinus(window.radius,
+              windowStd(c.fit, camera).radius) + " " + c.unit + "; give that of the drawing by --radius");
 }
 
 //! How far the nearest point that the camera saw of a target is behind the window.
@@ -113,7 +113,7 @@ void checkDistance(const RigCalibration& c, int camera, CollectedFindings& f)
     const double AT_TARGET = 0.02;          // part of the distance: a fit that comes to a target stays a little before it
     const GlassWindow window = c.fit.rig.cameras[camera]->window();
     const double std = windowStd(c.fit, camera).distance;
-    const std::string value = format("%.4g +- %.2g %s", window.distance, std, c.unit.c_str());
+    const std::string value = plusMinus(window.distance, std) + " " + c.unit;
     if (!(std > 0.) || c.options.std.isDistanceOpen)
         return;
     const bool isFree = c.options.flags & GLASS_FREE_DISTANCE;
@@ -173,21 +173,19 @@ void checkWindow(const RigCalibration& c, int camera, CollectedFindings& f)
     for (size_t i = 0; i < window.thickness.size(); i++)
     {
         if (c.options.flags & GLASS_FREE_THICKNESS && std.thickness[i] > WEAK_RELATIVE*window.thickness[i])
-            f.add(A_PARAMETER, prefixOf(c, camera) + format("the thickness is weakly determined: %.4g +- %.2g %s; measure it with "
-                                                    "a caliper and give it by --thickness", window.thickness[i],
-                                                    std.thickness[i], c.unit.c_str()));
+            f.add(A_PARAMETER, prefixOf(c, camera) + "the thickness is weakly determined: " + plusMinus(window.thickness[i],
+                  std.thickness[i]) + " " + c.unit + "; measure it with a caliper and give it by --thickness");
         if (c.options.flags & GLASS_FREE_INDEX && std.index[i] > WEAK_INDEX)
-            f.add(A_PARAMETER, prefixOf(c, camera) + format("the index is weakly determined: %.4g +- %.2g; give the material's value "
-                                                    "by --index", window.index[i], std.index[i]));
+            f.add(A_PARAMETER, prefixOf(c, camera) + "the index is weakly determined: " + plusMinus(window.index[i], std.index[i])
+                  + "; give the material's value by --index");
     }
     const std::optional<SecondSolution> other = secondSolution(c, camera);
     if (other && !other->isExcluded())
         f.add(THE_DATA, prefixOf(c, camera) + other->sentence());
     if (!hasDifferentMedia(window) && !isRound(window))
     {
-        const std::string effect = std.distance > 0. ? format("an effect only as far as the faces are not parallel (%.4g +- %.2g %s)",
-                                                              window.distance, std.distance, c.unit.c_str())
-                                                     : std::string("no effect on the image where faces are parallel");
+        const std::string effect = std.distance > 0. ? "an effect only as far as the faces are not parallel ("
+            + plusMinus(window.distance, std.distance) + " " + c.unit + ")" : "no effect on the image where faces are parallel";
         f.cannotTell.push_back(prefixOf(c, camera) + "the distance from camera to window: with the same medium on both sides it has "
                                + effect + ", and is not needed");
     }

@@ -22,7 +22,7 @@ const size_t WIDTH = 80;
 
 std::string correctionText(const char* name, const Correction& correction)
 {
-    return std::string(name) + (correction.estimated ? format(" %.3g +- %.2g", correction.by, correction.std) : " as given");
+    return std::string(name) + (correction.estimated ? " " + plusMinus(correction.by, correction.std) : " as given");
 }
 
 //! The camera that is known worst, for rigs too large to show all.

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "console/table.hpp"
+#include "console/numbers.hpp"
 #include <sys/stat.h>
 #include <unistd.h>
 #include <algorithm>
@@ -42,8 +43,8 @@ std::string takeColumns(std::string& word, size_t columns)
 
 std::string plusMinus(double value, double std)
 {
-    const int decimals = std > 0 ? std::max(0, 1 - (int)std::floor(std::log10(std))) : 6;
-    return format("%.*f +- %.*f", decimals, value, decimals, std);
+    const int decimals = decimalsOf(std);
+    return rounded(value, decimals) + " +- " + rounded(std, decimals);
 }
 
 Table::Table(const std::vector<std::string>& heading, size_t screen) : rows_(1, heading), screen_(screen) {}

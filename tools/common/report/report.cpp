@@ -6,6 +6,7 @@
 #include "assess/round_window.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "calibrate/window_face.hpp"
+#include "console/numbers.hpp"
 #include "console/progress.hpp"
 #include "console/table.hpp"
 #include "report/figures.hpp"
@@ -166,7 +167,8 @@ void setParameters(PageValues& page, const Fit& fit)
     PageList parameters, correlations, heads;
     for (const EstimatedParameter& p : all)
     {
-        parameters.push_back({{"name", p.name}, {"value", format("%.7g", p.value)}, {"std", format("%.2g", p.std)}});
+        const int decimals = decimalsOf(p.std);
+        parameters.push_back({{"name", p.name}, {"value", rounded(p.value, decimals)}, {"std", rounded(p.std, decimals)}});
     }
     for (const EstimatedParameter& p : window)
     {
@@ -186,6 +188,8 @@ void setParameters(PageValues& page, const Fit& fit)
     page.set("parameters", parameters);
     page.set("correlations", correlations);
     page.set("correlation_heads", heads);
+    const size_t BESIDE = 7;                // columns that half of the page has place for
+    page.set("many_correlations", window.size() > BESIDE);
 }
 
 void setTable(PageValues& page, const std::string& name, const std::vector<SummaryRow>& rows)
