@@ -57,14 +57,23 @@ std::string drawErrorsOverLength(const Acceptance& a)
         const double length = 1.1*longest*i/20;
         limits.push_back({length, a.limit.of(length)});
     }
-    const std::string unit = a.unit.empty() ? "" : ", " + a.unit;
     plot.data("errors", errors);
     plot.data("limits", limits);
-    plot << "set xlabel " << Plot::quoted("length" + unit) << "\nset ylabel " << Plot::quoted("error of indication" + unit)
+    plot << "set xlabel " << Plot::quoted("length", a.unit) << "\nset ylabel " << Plot::quoted("error of indication", a.unit)
          << "\nset xrange [0:" << 1.1*longest << "]\nset yrange [" << -1.1*highest << ':' << 1.1*highest << "]\nset key off\n"
          << "plot $limits using 1:2 with lines linewidth 2 linecolor rgb '#dc2626', $limits using 1:(-$2) with lines linewidth 2 "
             "linecolor rgb '#dc2626', 0 with lines linecolor rgb '#94a3b8', " << Plot::withBars("errors", "1", 2, 3, "#0284c7") << '\n';
     return plot.svg();
+}
+
+//! 1, 2 or 5 times a power of ten, some five of which are so long.
+double tickOf(double length)
+{
+    const double decade = std::pow(10., std::floor(std::log10(length/5.)));
+    for (double tick : {1., 2., 5.})
+        if (5.*tick*decade >= length)
+            return tick*decade;
+    return 10.*decade;
 }
 
 //! Where the lengths were, seen from above (z-x), each coloured by its error over its limit, in the box that was calibrated. SVG.
@@ -72,12 +81,14 @@ std::string drawErrorsInVolume(const Acceptance& a)
 {
     Plot plot(WIDTH, HEIGHT);
     std::vector<std::vector<double>> lengths, box;
+    std::vector<cv::Point2d> shown;
     for (const LengthResult& r : a.lengths)
     {
         for (size_t end : r.length.ends)
         {
             const cv::Point3d& X = a.points.points[end].X;
             lengths.push_back({X.z, X.x, r.error/r.limit});
+            shown.push_back({X.z, X.x});
         }
         lengths.push_back({NONE, NONE, NONE});
     }
@@ -85,12 +96,20 @@ std::string drawErrorsInVolume(const Acceptance& a)
     {
         const cv::Point3d& p = a.volume.box->least, & q = a.volume.box->most;
         box = {{p.z, p.x}, {q.z, p.x}, {q.z, q.x}, {p.z, q.x}, {p.z, p.x}};
+        shown.insert(shown.end(), {{p.z, p.x}, {q.z, q.x}});
     }
-    const std::string unit = a.unit.empty() ? "" : ", " + a.unit;
+    const auto range = [&](double cv::Point2d::*at) {
+        const auto [least, most] = std::minmax_element(shown.begin(), shown.end(), [at](const auto& p, const auto& q) {
+            return p.*at < q.*at; });
+        return cv::Vec2d((*least).*at, (*most).*at); };
+    const cv::Vec2d z = range(&cv::Point2d::x), x = range(&cv::Point2d::y);
+    const double longer = std::max(z[1] - z[0], x[1] - x[0]), margin = 0.05*longer, tick = tickOf(longer);
     plot.data("lengths", lengths);
     plot.data("box", box);
-    plot << "set xlabel " << Plot::quoted("z" + unit) << "\nset ylabel " << Plot::quoted("x" + unit)
-         << "\nset size ratio -1\nset cbrange [-1:1]\nset cblabel 'error over limit'\nset key off\nplot "
+    plot << "set xlabel " << Plot::quoted("z", a.unit) << "\nset ylabel " << Plot::quoted("x", a.unit)
+         << "\nset xrange [" << z[0] - margin << ':' << z[1] + margin << "]\nset yrange [" << x[0] - margin << ':' << x[1] + margin
+         << "]\nset xtics " << tick << "\nset ytics " << tick << "\nset size ratio -1\nset cbrange [-1:1]\nset cblabel "
+         << "'error over limit'\nset key off\nplot "
          << (box.empty() ? "" : "$box using 1:2 with lines dashtype 2 linewidth 2 linecolor rgb '#475569', ")
          << "$lengths using 1:2:3 with linespoints pointtype 7 pointsize 0.3 linewidth 2 linecolor palette\n";
     return plot.svg();

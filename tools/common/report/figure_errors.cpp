@@ -49,7 +49,7 @@ Figure drawErrorMap(const RigCalibration& c, const ErrorMap& map, Vec2d scale)
             rows.push_back({map.pixels[i].x, map.pixels[i].y, halfWidth, halfHeight, map.total[i]});
     Plot plot(size);
     plot.data("cells", rows);
-    plot << "set cblabel " << Plot::quoted("expected error, " + c.unit) << "\nset cbrange [" << scale[0] << ':' << scale[1]
+    plot << "set cblabel " << Plot::quoted("expected error", c.unit) << "\nset cbrange [" << scale[0] << ':' << scale[1]
          << "]\n" << (scale[1] > DECADE*scale[0] ? "set logscale cb\nset cbtics (" + ticsOfLog(scale) + ")\n" : "")
          << "unset key\nset style fill solid noborder\n"      // gnuplot's own range leaves out cells that reach over the border
          << "plot $cells using 1:2:3:4:5 with boxxyerror linecolor palette\n";
@@ -69,8 +69,8 @@ Figure drawErrorOverRange(const RigCalibration& c, const Assessment& assessment)
     plot.data("errors", rows);
     if (!limits.empty())
         plot.data("limits", limits);
-    plot << "set logscale xy\nset xlabel " << Plot::quoted("z from camera 1, " + c.unit) << "\nset ylabel "
-         << Plot::quoted("expected error, " + c.unit) << "\nset format y '%g'\n"
+    plot << "set logscale xy\nset xlabel " << Plot::quoted("z from camera 1", c.unit) << "\nset ylabel "
+         << Plot::quoted("expected error", c.unit) << "\nset format y '%g'\n"
          << "set xrange [" << rows.front()[0]*0.95 << ':' << rows.back()[0]*1.05 << "]\n"
          << "set xtics (";
     for (size_t i = 0; i < rows.size(); i++)

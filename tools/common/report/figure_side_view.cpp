@@ -199,8 +199,8 @@ Figure drawSideView(const RigCalibration& calibration, int camera, int axis)
         plot.paths("cone", {cone(angle, widened*std, length)});
         plot.paths("normal", {Path{Point2d(0, 0), Point2d(length*std::cos(angle), length*std::sin(angle))}});
     }
-    plot << "set size ratio -1\nset xlabel " << Plot::quoted("z, away from the camera, " + calibration.unit) << "\nset ylabel "
-         << Plot::quoted((axis == 0 ? "x, to the right, " : "y, downwards, ") + calibration.unit) << "\nset yrange [*:*] " << "reverse\n"
+    plot << "set size ratio -1\nset xlabel " << Plot::quoted("z, away from the camera", calibration.unit) << "\nset ylabel "
+         << Plot::quoted(axis == 0 ? "x, to the right" : "y, downwards", calibration.unit) << "\nset yrange [*:*] " << "reverse\n"
          << "set key outside top center horizontal maxrows 1 samplen 1.5\n"
          << "plot $boards with lines linecolor rgb '#94a3b8' title 'boards', ";
     if (hasNormal)

@@ -135,7 +135,7 @@ static Figure drawInfluence(const RigCalibration& c, int camera)
     Plot plot(std::max(560, 110 + 26*(int)rows.size()), 320);
     plot.data("views", rows);
     plot << viewTics(c, views) << "set xlabel 'view (name of its images)'\nset ylabel "
-         << Plot::quoted((isRound(window) ? "motion of the centre, " : "turn of the normal, ") + placeUnit(window, c.unit))
+         << Plot::quoted(isRound(window) ? "motion of the centre" : "turn of the normal", placeUnit(window, c.unit))
          << "\nset yrange [0:*]\n"
          << "set xrange [-0.7:" << rows.size() - 0.3 << "]\nset style fill solid 0.9 noborder\nset boxwidth 0.6\n"
          << "set key outside top center horizontal maxrows 1 samplen 2\nunset grid\nset grid ytics linecolor rgb '#e2e8f0' linetype 1\n"

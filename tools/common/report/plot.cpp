@@ -4,6 +4,7 @@
 #include "report/plot.hpp"
 #include "console/failure.hpp"
 #include "console/file_output.hpp"
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -85,7 +86,10 @@ void Plot::paths(const std::string& name, const std::vector<std::vector<cv::Poin
     data(name, rows);
 }
 
-Plot::Plot(cv::Size image) : Plot(600, 70 + 460*image.height/image.width)
+//! Of a line camera the picture is low, but not its labels.
+static int heightOf(cv::Size image) { return std::max(200, 70 + 460*image.height/image.width); }
+
+Plot::Plot(cv::Size image) : Plot(600, heightOf(image))
 {
     script_ << "set lmargin at screen " << 60./600 << "\nset rmargin at screen " << 480./600 << "\nset xrange [-0.5:"
             << image.width - 0.5 << "]\nset yrange [" << image.height - 0.5 << ":-0.5]\n"
@@ -119,6 +123,11 @@ std::string Plot::withBars(const std::string& name, const std::string& x, int y,
     const std::string style = " linecolor rgb '" + colour + "' notitle", shown = "$" + name + " using " + x + ":";
     return shown + cv::format("($%d-$%d):(0):(2*$%d) with vectors nohead linewidth 1.5", y, deviation, deviation) + style + ", " + shown
         + std::to_string(y) + " with points pointtype 7 pointsize 0.35" + style;
+}
+
+std::string Plot::quoted(const std::string& quantity, const std::string& unit)
+{
+    return quoted(unit.empty() ? quantity : quantity + ", " + unit);
 }
 
 std::string Plot::quoted(const std::string& text)

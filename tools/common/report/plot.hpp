@@ -51,6 +51,8 @@ public:
 
     //! A text as a gnuplot string constant.
     static std::string quoted(const std::string& text);
+    //! What an axis shows; the unit may be unknown.
+    static std::string quoted(const std::string& quantity, const std::string& unit);
 
 private:
     std::ostringstream script_;
