@@ -12,13 +12,14 @@ a board, or of any scene.
 
 One image each of --direct and --glass are a pair; among several, those with the same name. The target must not have moved
 between them, not even by a tenth of a pixel: in air, such a shift looks like a tilt of the window (--placement-std).
-Tried, each alone: a window tilted, its distance, thickness, index, wedge; the medium before it; the focus of one camera or of all,
-a camera's principal point, R and T; the square of the board; a motion of all boards between direct and glass; images turned, mirrored, exchanged, or
-of different moments. What explains the images best is named with its value and +-; what does so about as well follows after "or".
+Tried, each alone: a window tilted, its distance, thickness, index, wedge; the medium before it; the focus of one camera or of
+all, a camera's principal point, R and T; the square of the board; a motion of all boards between direct and glass; images turned,
+mirrored, exchanged, or of different moments. What explains the images best is named with its value and +-; what does so about as
+well follows after "or".
 The noise comes from the calibration's residuals, the calibration's own error from the covariance in calib.yml.
 A new pane is wedge-shaped in another way than the old one, which looks like a tilt: with --new-pane, that is part of the +-.
-If nothing changed, it says that something did with the probability --false-alarm. What was wrong in the calibration and still is does
-not show, as far as the calibrated values have absorbed it: a wrong square of the same board never. The last line says up to which size.
+If nothing changed, it says that something did with the probability --false-alarm. What was wrong in the calibration and still is,
+as the square of the same board, hardly shows, as the calibrated values have absorbed it: the last lines say up to which size.
 
 --scene, once for each camera, are images, quoted globs or videos, in which refract_match finds points; --depth is z of the scene in the
 frame of camera 1. No scene shows a turn of the whole rig, or another scale; in air it hardly shows a window's tilt.

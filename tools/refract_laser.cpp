@@ -286,7 +286,8 @@ std::string profileOf(const std::vector<Scan>& scans, const std::string& unit)
             profiles.back().emplace_back(X.x, X.z);
     }
     plot.paths("profile", profiles);
-    plot << "set grid\nset yrange [] reverse\nset xlabel " << Plot::quoted("x", unit) << "\nset ylabel " << Plot::quoted("z", unit) << "\n"
+    plot << "set grid\nset yrange [] reverse\nset xlabel " << Plot::quoted("x", unit) << "\nset ylabel "
+         << Plot::quoted("z", unit) << "\n"
          << "plot $profile using 1:2 with points pt 7 ps 0.25 notitle\n";
     return plot.svg();
 }

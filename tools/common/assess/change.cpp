@@ -250,7 +250,8 @@ private:
     //! No chart: those of the cameras have it.
     void addAllLenses()
     {
-        if (count_ < 2 || std::any_of(rig_.cameras.begin(), rig_.cameras.end(), [](const auto& camera) { return isSplined(*camera); }))
+        const auto hasNoFocus = [](const auto& camera) { return isSplined(*camera); };
+        if (count_ < 2 || std::any_of(rig_.cameras.begin(), rig_.cameras.end(), hasNoFocus))
             return;
         add("focal lengths of all cameras (temperature) changed by", -1, {percent(WIDE)}, [](RigModel& rig, const VectorXd& d) {
             for (int c = 0; c < (int)rig.cameras.size(); c++)

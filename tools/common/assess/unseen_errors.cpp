@@ -36,7 +36,8 @@ std::string valueOf(const UncertaintySource& source) { return source.name.substr
 bool isGiven(const UncertaintySource& source)
 {
     const std::string of = valueOf(source);
-    return source.std > 0. && (source.isOfTarget() || of == "thickness" || of == "index" || of == "radius" || of == INDEX_OF_MEDIUM);
+    return source.std > 0.
+           && (source.isOfTarget() || of == "thickness" || of == "index" || of == "radius" || of == INDEX_OF_MEDIUM);
 }
 
 //! "mm" of "0.1 mm (default)".
@@ -82,7 +83,8 @@ std::vector<UnseenError> unseenErrors(const CheckInput& input, const CheckProble
         if (!(G.size() > 0))
             return {};
         const double times = std::sqrt(needed/std::max(0., SymmetricEigen(G).values[0]));
-        const UnseenError error{valueOf(source), times < FAR_OFF ? times*source.std : NONE_SHOWS, unitOf(source), source.isOfTarget()};
+        const UnseenError error{valueOf(source), times < FAR_OFF ? times*source.std : NONE_SHOWS, unitOf(source),
+                                source.isOfTarget()};
         const auto same = std::find_if(unseen.begin(), unseen.end(), [&](const UnseenError& u) { return u.of == error.of; });
         if (same == unseen.end())
             unseen.push_back(error);

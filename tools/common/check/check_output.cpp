@@ -177,7 +177,8 @@ std::string unseenBy(const CheckResult& result)
 {
     std::string text;
     for (const UnseenError& error : result.unseen)
-        text += (text.empty() ? "" : ", ") + error.of + (error.isOfTarget ? " (and with it all lengths)" : "") + (text.empty() ? " wrong" : "")
+        text += (text.empty() ? "" : ", ") + error.of + (error.isOfTarget ? " (and with it all lengths)" : "")
+                + (text.empty() ? " wrong" : "")
                 + (std::isfinite(error.least) ? format(" by up to %.2g", error.least) + (error.unit.empty() ? "" : " " + error.unit)
                                               : std::string(" by any amount"));
     return text.empty() ? "" : "Not shown, if the calibration had it already: " + text + ".";

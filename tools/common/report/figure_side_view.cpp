@@ -217,7 +217,8 @@ Figure drawSideView(const RigCalibration& calibration, int camera, int axis)
     std::string note = widened > 1 ? format("the cone of the normal is widened %g times", widened)
                                    : std::string("the cone of the normal is drawn as it is");
     if (!hasDifferentMedia(window))
-        note += format("; the window's distance does not show in the images, it is drawn at %.3g %s", window.distance, calibration.unit.c_str());
+        note += format("; the window's distance does not show in the images, it is drawn at %.3g %s", window.distance,
+                       calibration.unit.c_str());
     return {plot.svg(), note};
 }
 

@@ -116,9 +116,9 @@ void requireNoMoreRows(const MarkerCorners& corners, const std::vector<int>& ids
         const double off = misfit(corners, ids, cv::Size(squares.width, MOST), legacy);
         const int rows = rowsOf(ids, squares.width, legacy);
         if (off > 0. && off < RIGHT && rows > squares.height)
-            throw Failure(cv::format("this ChArUco board has %d rows of squares or more, and %d with --size=%dx%d: give --size=%dx%d, or how "
-                                     "many rows of inner corners there are", rows, squares.height, squares.width - 1, squares.height - 1,
-                                     squares.width - 1, rows - 1));
+            throw Failure(cv::format("this ChArUco board has %d rows of squares or more, and %d with --size=%dx%d: give --size=%dx%d, "
+                                     "or how many rows of inner corners there are", rows, squares.height, squares.width - 1,
+                                     squares.height - 1, squares.width - 1, rows - 1));
     }
 }
 
