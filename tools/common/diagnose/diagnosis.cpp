@@ -237,8 +237,12 @@ std::vector<std::string> imageMistakes(const CalibrationInput& input, const MixU
             return told(input, {other}, clean);
     }
     const Explanation unpaired = isUnpaired ? unpairedImages(input) : Explanation{"", NO_FIT};
-    if (unpaired.px < sound)
-        return told(input, {unpaired}, clean);
+    if (unpaired.px < sound)    // a far window's pairs seem to be unpaired, too: then one value of all images explains as much
+    {
+        const double asWell = CLEAN*unpaired.px;
+        const std::vector<Explanation> values = bestBelow(asWell, explanationsOf(input, FAR_OFF, sound, asWell, plain));
+        return told(input, values.empty() ? std::vector<Explanation>{unpaired} : values, clean);
+    }
     if (!areUnrelated(mixUps))
         return {};
     std::vector<MixUp> relating;        // they explain as much with less
