@@ -34,6 +34,7 @@ honesty-4         25  test              $source_files
 honesty-5         25  test              $source_files
 honesty-6         25  test              $source_files
 honesty-7         25  test              $source_files
+honesty-8         25  test              $source_files
 pages             25  test              $source_files doc README.md
 site              10  test,site         doc README.md test/site modules
 opencv-4          25  test,in-tree      modules test/opencv_in_tree.sh test/opencv_source.sh test/opencv_hooks
@@ -177,7 +178,7 @@ slice_monte_carlo_3() { monte_carlo 3; }
 slice_monte_carlo_4() { monte_carlo 4; }
 slice_monte_carlo_5() { monte_carlo 5; }
 slice_monte_carlo_6() { monte_carlo 6; }
-# The three of [flows], a quarter of their trials: whole, each takes an hour or more.
+# The four of [flows], a quarter of their trials: whole, each takes an hour or more.
 honesty() {             # honesty TEST RIGS...
   test=$1; shift
   targets=refract_tools_tests
@@ -196,6 +197,7 @@ slice_honesty_4() { honesty "$drawn_flows" sealed "shared wall" robust; }
 slice_honesty_5() { honesty "$chosen_lenses" "sealed, air"; }
 slice_honesty_6() { honesty "$chosen_lenses" "sealed, bare surface"; }
 slice_honesty_7() { honesty "$chosen_lenses" "sealed, housing in water"; }
+slice_honesty_8() { honesty "Five hundred sealed rigs from afar, few views, wrong corners*" all; }
 
 # ---- documentation
 slice_pages() {

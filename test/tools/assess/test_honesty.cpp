@@ -770,7 +770,7 @@ struct SealedRig
 
 } // namespace
 
-TEST_CASE("Five hundred sealed rigs from afar, few views, wrong corners: no crash, and intervals of lengths hold", "[.honesty]")
+TEST_CASE("Five hundred sealed rigs from afar, few views, wrong corners: no crash, and intervals of lengths hold", "[.honesty][flows]")
 {
     const int count = scenes::trials(500);
     Ratio lengths;
