@@ -52,7 +52,7 @@ bool isSaid(const std::string& what, double distance, double nearest)
 TEST_CASE("The verdict says at which bound a window's distance ended", "[findings]")
 {
     CHECK(isSaid("ended where a target touches it", 615, 640));
-    CHECK(isSaid("ended at its bound, 0 +- ", 0, 400));
+    CHECK(isSaid("ended at its bound, 0.0 +- ", 0, 400));
     CHECK_FALSE(isSaid("ended", 200, 650));
 }
 

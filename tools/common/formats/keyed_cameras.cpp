@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "formats/foreign_file.hpp"
-#include "camera/camera.hpp"
+#include "camera/storage.hpp"
 #include "formats/colmap_cameras.hpp"
 
 #include <opencv2/core/affine.hpp>

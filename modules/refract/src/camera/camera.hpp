@@ -84,9 +84,6 @@ private:
 Ptr<Lens> readLens(const String& model, InputArray cameraMatrix, InputArray distCoeffs,
                    const char* nameOfMatrix = "cameraMatrix", const char* nameOfCoefficients = "distCoeffs");
 
-//! OpenCV's name of what files of other programs call a lens model ("plumb_bob"); empty: OpenCV has no such model.
-String lensModelCalled(const String& name);
-
 //! The implementation behind the public handle, which nobody else derives from; throws if it is empty, naming the argument.
 Camera& cameraOf(const Ptr<RefractiveCamera>& camera, const char* name = "camera");
 

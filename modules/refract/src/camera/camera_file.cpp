@@ -6,7 +6,6 @@
 #include "camera/camera.hpp"
 #include "camera/cameramodel.hpp"
 #include "camera/storage.hpp"
-#include <map>
 
 /* RefractiveCamera <-> files: OpenCV's YAML/XML/JSON keys plus glass_window, and mrcal's .cameramodel. */
 
@@ -19,16 +18,6 @@ void Camera::write(FileStorage& fs) const
     fs << "lens_model" << lensModel();
     fs << "glass_window";
     window_.write(fs);
-}
-
-String lensModelCalled(const String& name)
-{
-    static const std::map<String, String> names = {
-        { "opencv", "opencv" }, { "plumb_bob", "opencv" }, { "rational_polynomial", "opencv" }, { "thin_prism", "opencv" },
-        { "radtan", "opencv" }, { "brown", "opencv" }, { "none", "opencv" },
-        { "fisheye", "fisheye" }, { "equidistant", "fisheye" }, { "equi", "fisheye" }, { "kannala_brandt", "fisheye" } };
-    const auto found = names.find(name);
-    return found == names.end() ? String() : found->second;
 }
 
 static String lensModelIn(const FileNode& node, const String& filename)

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cstdio>
 #include <fstream>
+#include <map>
 #ifdef _WIN32
 #ifndef NOMINMAX        // some compilers' own headers have it
 #define NOMINMAX
@@ -103,6 +104,16 @@ Mat readStoredMatrix(const FileNode& map, const char* key, const String& filenam
         m.ptr<double>()[i++] = (double)number;
     }
     return m;
+}
+
+String lensModelCalled(const String& name)
+{
+    static const std::map<String, String> names = {
+        { "opencv", "opencv" }, { "plumb_bob", "opencv" }, { "rational_polynomial", "opencv" }, { "thin_prism", "opencv" },
+        { "radtan", "opencv" }, { "brown", "opencv" }, { "none", "opencv" },
+        { "fisheye", "fisheye" }, { "equidistant", "fisheye" }, { "equi", "fisheye" }, { "kannala_brandt", "fisheye" } };
+    const auto found = names.find(name);
+    return found == names.end() ? String() : found->second;
 }
 
 //! path/name.yml -> path/.part1234-0.name.yml, of each writer another: the extension chooses FileStorage's format.

@@ -18,6 +18,9 @@ FileStorage openStorage(const String& filename);
 //! The matrix of one channel called `key`, CV_64F, a plain list is a column; empty if there is none. Throws StsParseError.
 Mat readStoredMatrix(const FileNode& map, const char* key, const String& filename);
 
+//! OpenCV's name of what files of other programs call a lens model ("plumb_bob"); empty: OpenCV has no such model.
+String lensModelCalled(const String& name);
+
 /** Writes a file as saveStorage does.
 @param write to that path; false if it cannot */
 void saveWhole(const String& filename, const std::function<bool(const String& path)>& write);
