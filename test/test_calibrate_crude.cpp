@@ -4,6 +4,8 @@
 // Sealed rigs of which hardly anything is known: whatever the start, the minimum is the one that the truth leads to. The long
 // form is hidden: run with [.crude], TRIALS rigs of each kind.
 #include "crude_scenes.hpp"
+#include "rig_scenes.hpp"
+#include <sstream>
 
 using namespace cv;
 using namespace cv::refract;
@@ -95,4 +97,49 @@ TEST_CASE("Rigs of one to eight cameras from crude starts", "[.crude]")
         CHECK(tally.wrong == 0);
         CHECK(tally.same + tally.better >= 0.99*tally.runs);
     }
+}
+
+TEST_CASE("A steep window is found from one that looks straight ahead, where the lens is estimated too", "[calibrate]")
+{
+    // A hand-held board: the direct images tell the lens, the others the window.
+    int runs = 0, right = 0;
+    std::ostringstream wrong;
+    for (int number = 1; number <= trials(8); number++)
+        for (double outerIndex : { 1., 1.333 })
+        {
+            Random random(8800 + number);
+            const double tilt = random.uniform(0.7, 0.95), azimuth = random.uniform(0, 2*CV_PI);
+            const Vec3d normal(std::sin(tilt)*std::cos(azimuth), std::sin(tilt)*std::sin(azimuth), std::cos(tilt));
+            RigTruth rig;
+            rig.windows = { 0 };
+            rig.Rs = { Matx33d::eye() };
+            rig.Ts = { Vec3d() };
+            rig.cameras = { paperCamera(paper::pane(60, normal, outerIndex)) };
+            const int images = 4;           // of each kind
+            RigScene scene = makeRigScene(rig, 2*images, random, 0.1);
+            for (int view = 0; view < 2*images; view++)
+                (view < images ? scene.refracted : scene.direct)[0][view].clear();
+            RigCall call(rig, scene, true);
+            Mat lens = call.cameras[0]->lensParameters().clone();
+            lens.rowRange(0, 2) *= 1.02;
+            call.cameras[0]->setLensParameters(lens);
+            runs++;
+            try
+            {
+                call.run(GLASS_FREE_INTRINSICS | (outerIndex > 1 ? GLASS_FREE_DISTANCE : 0));
+            }
+            catch (const CalibrationError& e)
+            {
+                wrong << "number " << number << ": " << e.err << '\n';
+                continue;
+            }
+            const int row = lens.rows;
+            const Vec3d error = call.cameras[0]->window().normal - normal;
+            const double off = std::sqrt(squaredMahalanobis({ error[0], error[1] }, call.covariance, { row, row + 1 }));
+            right += off < 4.5;
+            if (!(off < 4.5))
+                wrong << "index " << outerIndex << ", number " << number << ", tilt " << tilt << ": off by " << off << '\n';
+        }
+    INFO(wrong.str());
+    CHECK(right == runs);
 }

@@ -227,10 +227,9 @@ GlassWindow startWindow(const Rig& rig, int owner, const RigViews& views, const 
     const bool isRound = hasCenter(window.shape);
     const bool areKnown = isRound ? hasPairs(rig, owner, views, poses)
                                   : normalOfPairs(rig, owner, views, poses, flags, window.normal);
-    if (areKnown ? isRound || !(flags & GLASS_FREE_DISTANCE) : (flags & GLASS_FREE_INTRINSICS) != 0)
-        return window;
     const int best = bestObserver(rig, owner, views);
-    if (best < 0)
+    const bool isSealed = (flags & GLASS_FREE_INTRINSICS) && best >= 0 && !seesAnything(views.cameras[best].direct);
+    if (best < 0 || (areKnown ? isRound || !(flags & GLASS_FREE_DISTANCE) : isSealed))
         return window;
     std::vector<int> which;
     RigViews seen = viewsThrough(views, best, which);
