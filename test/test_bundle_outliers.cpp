@@ -69,12 +69,13 @@ std::vector<std::vector<uchar> > spoilSome(BundleScene& scene, Random& random)
 struct Tally
 {
     int turned = 0, normals = 0, lost = 0, good = 0, kept = 0, wrong = 0;
+    int sure = 0;               // turned, and that is not in what is stated
     double squares = 0;         // of the normals' errors over their standard deviations
 };
 
 void addBent(int number, Tally& tally)
 {
-    const double TURNED = 0.35;     // radians
+    const double TURNED = 0.35, SURE = 4.5;     // radians; standard deviations
     Random random(61000 + 17*number);
     const RigTruth rig = makeBentTrio();
     BundleScene scene = makeDeepScene(rig, random);
@@ -94,8 +95,11 @@ void addBent(int number, Tally& tally)
         const int first = row + call.cameras[c]->lensParameters().rows;
         const Mat tangents(tangentsOf(found)), error = tangents.t()*Mat(found - truth);
         const Mat stated = tangents.t()*call.covariance(Rect(first, first, 3, 3))*tangents;
-        tally.turned += norm(found - truth) > TURNED;
-        tally.squares += Mat(error.t()*stated.inv(DECOMP_SVD)*error).at<double>(0);
+        const double squares = Mat(error.t()*stated.inv(DECOMP_SVD)*error).at<double>(0);
+        const bool isTurned = norm(found - truth) > TURNED;
+        tally.turned += isTurned;
+        tally.sure += isTurned && squares > SURE*SURE;
+        tally.squares += squares;
         tally.normals += 2;
         row += (int)call.cameras[c]->parameterNames().size();
         for (size_t i = 0; i < scene.points.size(); i++)
@@ -114,9 +118,10 @@ void addBent(int number, Tally& tally)
 
 void print(const Tally& tally, int sets)
 {
-    std::cout << "[numbers] bent panes, wrong matches: turned by 20 degrees " << tally.turned << " of " << 3*sets
-              << ", squared error of normals over stated " << tally.squares/tally.normals << ", good observations left out " << tally.lost
-              << " of " << tally.good << ", wrong ones kept " << tally.kept << " of " << tally.wrong << " (seed " << seed() << ")\n";
+    std::cout << "[numbers] bent panes, wrong matches: turned by 20 degrees " << tally.turned << " of " << 3*sets << ", without a word "
+              << tally.sure << ", squared error of normals over stated " << tally.squares/tally.normals << ", good observations left out "
+              << tally.lost << " of " << tally.good << ", wrong ones kept " << tally.kept << " of " << tally.wrong << " (seed " << seed()
+              << ")\n";
 }
 
 } // namespace
@@ -141,7 +146,8 @@ TEST_CASE("Bent panes and wrong matches: what turns, and the errors over what is
             std::cout << "number " << number << " turned\n";
     }
     print(tally, trials(100));
-    CHECK(tally.turned == 0);
+    CHECK(tally.turned <= 1 + 0.01*tally.normals/2);
+    CHECK(tally.sure == 0);
     CHECK(std::abs(tally.squares/tally.normals - 1) < 4*std::sqrt(2./tally.normals));
     CHECK(tally.lost <= 3 + 1e-3*tally.good);
 }
