@@ -11,6 +11,7 @@ have several minima as well, of which the closed form knows one: all poses of th
 
 #include "pose/poses.hpp"
 #include "pose/central_pose.hpp"
+#include "pose/nearest_rays.hpp"
 #include "pose/three_rays.hpp"
 #include "arrays/arrays.hpp"
 #include "arrays/views.hpp"
@@ -98,14 +99,11 @@ double radiusOf(const std::vector<Point3d>& points)
 target that is so many times nearer; what is left a fit mends. */
 double magnificationFor(const std::vector<Point2d>& normalized)
 {
-    const double LEAST_VARIANCE = 1e-4;
-    Point2d mean;
-    for (const Point2d& p : normalized)
-        mean += p*(1./(double)normalized.size());
-    double variance = 0;
-    for (const Point2d& p : normalized)
-        variance += (p - mean).dot(p - mean)/(double)normalized.size();
-    return std::sqrt(std::max(1., LEAST_VARIANCE/std::max(variance, DBL_MIN)));
+    const double REFUSED = 1.1e-5, MAGNIFIED = 1e-4;
+    Scalar mean, deviation;
+    meanStdDev(normalized, mean, deviation);
+    const double variance = deviation[0]*deviation[0] + deviation[1]*deviation[1];
+    return variance > REFUSED ? 1. : std::sqrt(MAGNIFIED/std::max(variance, DBL_MIN));
 }
 
 std::vector<Pose> closedFormPoses(const Camera& camera, const ImagePoints& points)
@@ -316,26 +314,32 @@ static bool isMinimum(const Camera& camera, const ImagePoints& points, const Pos
     SumOfSquares<6> here;
     Vec6d step;
     const Vec6d six(pose.rvec[0], pose.rvec[1], pose.rvec[2], pose.tvec[0], pose.tvec[1], pose.tvec[2]);
-    return PoseErrors{ camera, points }(six, here) && dampedStep(here, Vec6d(), 0, step) &&
-           expectedGain(here, step) < NOTHING*here.value + ROUNDING*(double)points.pixel.size();
+    return PoseErrors{ camera, points }(six, here) &&
+           (!dampedStep(here, Vec6d(), 0, step) || expectedGain(here, step) < NOTHING*here.value + ROUNDING*(double)points.pixel.size());
 }
 
-/** Maximum likelihood from a start that may be within the window, as a closed form's may of a target that is close to it: that is moved
-away from the camera until all points have an image.
+/** Maximum likelihood from a start. One of a target that is close to a window may be within that, or lead to it: from there it is moved
+to the rays, which have no boundary, and away from the camera until all points have an image.
 @param isAtBoundary gets whether the descent ended at the window, as points would leave the images beyond it: a start, no minimum */
 static PoseMinimum refineShown(const Camera& camera, const ImagePoints& points, const Pose& start, bool& isAtBoundary)
 {
     PoseMinimum minimum = { start, NaN };
+    minimum.rms = refinePose(camera, points, minimum.pose);
     isAtBoundary = false;
+    if (!std::isnan(minimum.rms) && isMinimum(camera, points, minimum.pose))
+        return minimum;
+    const Pose near = nearestToRays(camera, points, start);
     for (double farther : { 1., 1.03, 1.1, 1.25 })
     {
-        minimum.pose = start;
-        minimum.pose.tvec *= farther;
-        minimum.rms = refinePose(camera, points, minimum.pose);
-        isAtBoundary = farther > 1 && !isMinimum(camera, points, minimum.pose);
-        if (!std::isnan(minimum.rms))
-            break;
+        PoseMinimum moved = { near, NaN };
+        moved.pose.tvec *= farther;
+        moved.rms = refinePose(camera, points, moved.pose);
+        if (std::isnan(moved.rms))
+            continue;
+        minimum = moved;
+        break;
     }
+    isAtBoundary = !isMinimum(camera, points, minimum.pose);
     return minimum;
 }
 
