@@ -144,7 +144,8 @@ TEST_CASE("Where the optimum touches the window, that is said, and not to iterat
     CAPTURE(seed());
     Random random(3530);
     int touching = 0;
-    for (int trial = 0; trial < 60; trial++)
+    const int calibrations = trials(12);
+    for (int trial = 0; trial < calibrations; trial++)
     {
         const GlassWindow wall(Vec3d(random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1), 1), 20, 1.5, 100, 1.333);
         const Ptr<RefractiveCamera> truth = RefractiveCamera::create(Matx33d(900, 0, 640, 0, 900, 480, 0, 0, 1), noArray(), wall);
@@ -193,6 +194,6 @@ TEST_CASE("Where the optimum touches the window, that is said, and not to iterat
         CHECK((e.view >= 0 && e.view < 6 && e.point >= 0 && e.point < 35 && e.camera == 0));
         CHECK_THAT(refusal(3).err, Contains("raise criteria.maxCount"));
     }
-    std::cout << "[numbers] optimum that touches the window: in " << touching << " of 60 calibrations" << std::endl;
+    std::cout << "[numbers] optimum that touches the window: in " << touching << " of " << calibrations << " calibrations" << std::endl;
     CHECK(touching > 0);
 }

@@ -99,12 +99,24 @@ TEST_CASE("Rigs of one to eight cameras from crude starts", "[.crude]")
     }
 }
 
-TEST_CASE("A steep window is found from one that looks straight ahead, where the lens is estimated too", "[calibrate]")
+namespace {
+
+//! Moves a part of the points of each image far away.
+void misplace(std::vector<std::vector<Point2d> >& images, double part, Random& random)
 {
-    // A hand-held board: the direct images tell the lens, the others the window.
+    for (std::vector<Point2d>& pixels : images)
+        for (Point2d& pixel : pixels)
+            if (random.uniform(0, 1) < part)
+                pixel += Point2d(random.uniform(20, 200), random.uniform(-200, -20));
+}
+
+/** A hand-held board: the direct images tell the lens, the others the window.
+@param outliers part of the points that are misplaced */
+void findSteepWindows(int rigs, double outliers)
+{
     int runs = 0, right = 0;
     std::ostringstream wrong;
-    for (int number = 1; number <= trials(8); number++)
+    for (int number = 1; number <= rigs; number++)
         for (double outerIndex : { 1., 1.333 })
         {
             Random random(8800 + number);
@@ -119,6 +131,8 @@ TEST_CASE("A steep window is found from one that looks straight ahead, where the
             RigScene scene = makeRigScene(rig, 2*images, random, 0.1);
             for (int view = 0; view < 2*images; view++)
                 (view < images ? scene.refracted : scene.direct)[0][view].clear();
+            misplace(scene.direct[0], outliers, random);
+            misplace(scene.refracted[0], outliers, random);
             RigCall call(rig, scene, true);
             Mat lens = call.cameras[0]->lensParameters().clone();
             lens.rowRange(0, 2) *= 1.02;
@@ -126,7 +140,7 @@ TEST_CASE("A steep window is found from one that looks straight ahead, where the
             runs++;
             try
             {
-                call.run(GLASS_FREE_INTRINSICS | (outerIndex > 1 ? GLASS_FREE_DISTANCE : 0));
+                call.run(GLASS_FREE_INTRINSICS | (outerIndex > 1 ? GLASS_FREE_DISTANCE : 0) | (outliers > 0 ? GLASS_ROBUST : 0));
             }
             catch (const CalibrationError& e)
             {
@@ -142,4 +156,16 @@ TEST_CASE("A steep window is found from one that looks straight ahead, where the
         }
     INFO(wrong.str());
     CHECK(right == runs);
+}
+
+} // namespace
+
+TEST_CASE("A steep window is found from one that looks straight ahead, where the lens is estimated too", "[calibrate]")
+{
+    findSteepWindows(trials(8), 0);
+}
+
+TEST_CASE("A steep window is found among wrong points, where the lens is estimated too", "[calibrate]")
+{
+    findSteepWindows(trials(6), 0.1);
 }

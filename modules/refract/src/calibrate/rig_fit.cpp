@@ -7,7 +7,7 @@
 #include "adjust/robust_fit.hpp"
 #include "arrays/arrays.hpp"
 #include "start/incremental_start.hpp"
-#include "start/pose_start.hpp"
+#include "start/inliers.hpp"
 #include "start/sealed_start.hpp"
 #include "start/window_start.hpp"
 #include "window/parameters.hpp"
@@ -181,7 +181,7 @@ bool startAsGiven(const Rig& rig, const RigViews& views, const RigTask& task, Ri
 
 FitOutcome findStart(const Rig& rig, RigTask& task, RigStart& start, std::vector<OtherMinimum>& minima)
 {
-    const RigViews views = task.isRobust() ? inlierViews(rig, task.views) : task.views;
+    const RigViews views = task.isRobust() ? inlierViews(rig, task.views, task.flags) : task.views;
     const int flags = task.searchFlags();
     const bool isAsGiven = task.isRefit && startAsGiven(rig, views, task, start);
     const bool searchesLens = (flags & GLASS_FREE_INTRINSICS) && !isAsGiven, isIncremental = task.isIncremental(rig) && !isAsGiven;

@@ -23,6 +23,7 @@ takes up, nearly, and at other depths not: of rational lenses the richest is cho
 #include "calibrate/near_task.hpp"
 #include "calibrate/rig_fit.hpp"
 #include "math/robust_scale.hpp"
+#include "start/inliers.hpp"
 
 namespace cv { namespace refract {
 
@@ -151,7 +152,7 @@ private:
         task.flags |= candidate.flags;
         if (!hasWindow())
         {
-            const RigViews views = isRobust_ ? inlierViews(given_, task.views) : task.views;
+            const RigViews views = isRobust_ ? inlierViews(given_, task.views, task.flags) : task.views;
             start = { given_, posesWithoutWindow(given_, views, task.knownPoses) };
             if (isRobust_)
                 dropUnusable(start.poses);

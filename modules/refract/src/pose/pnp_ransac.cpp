@@ -224,6 +224,31 @@ static Pose solveRobustly(const Camera& camera, const ImagePoints& points, doubl
     return poseOf(best.motion);
 }
 
+std::vector<Point2d> pointsOfOnePose(const Camera& camera, const std::vector<Point3d>& objectPoints,
+                                     const std::vector<Point2d>& imagePoints)
+{
+    const double NARROWEST = 2, WIDEST = 8;     // pixels: noise plus what a rough window or lens does
+    const Effort effort = { 500, 0.9999 };      // a third of the points right: still 18 samples of three right ones
+    const Point2d missing = Point2d(1, 1)*std::numeric_limits<double>::quiet_NaN();
+    std::vector<Point2d> chosen, whole = imagePoints;
+    for (Point2d& pixel : whole)
+        if (!isWhole(pixel))            // halves have no rays to sample
+            pixel = missing;
+    const ImagePoints points = observed(objectPoints, whole);
+    if (points.pixel.size() < 4)
+        return chosen;
+    const double least = std::max(4., LEAST_INLIER_RATIO*(double)points.pixel.size());
+    std::vector<int> inliers;
+    for (double limit = NARROWEST; limit <= WIDEST && (double)inliers.size() < least; limit *= 2)
+        solveRobustly(camera, points, limit, effort, Pose(), inliers);
+    if ((double)inliers.size() < least)
+        return chosen;
+    chosen.assign(imagePoints.size(), missing);
+    for (int i : inliers)
+        chosen[i] = imagePoints[i];
+    return chosen;
+}
+
 bool refractiveSolvePnPRansac(InputArray objectPoints, InputArray imagePoints, const Ptr<RefractiveCamera>& camera,
                               OutputArray rvec, OutputArray tvec, bool useExtrinsicGuess, int iterationsCount,
                               float reprojectionError, double confidence, OutputArray inliers_)

@@ -74,13 +74,11 @@ struct CentralView
             {
                 object.push_back(points.object[i]);
                 normalized.push_back(bearings.normalized[i]);
-                point.push_back((int)i);
             }
     }
     Bearings bearings;
     std::vector<Point3d> object;
     std::vector<Point2d> normalized;
-    std::vector<int> point;         //!< in the image
 };
 
 //! Farthest distance of a point from the mean of all.
@@ -197,34 +195,6 @@ double refinePose(const Camera& camera, const ImagePoints& points, Pose& pose, i
     pose.rvec = Vec3d(six.val);
     pose.tvec = Vec3d(six.val + 3);
     return std::sqrt(sum/count);
-}
-
-std::vector<Point2d> pointsOfOnePose(const Camera& camera, const std::vector<Point3d>& objectPoints,
-                                     const std::vector<Point2d>& imagePoints)
-{
-    const double NARROWEST = 2, WIDEST = 8;     // pixels: noise plus what the rays' different origins do
-    const int TRIALS = 500;                     // a third of the points right: still 6 samples of four right ones
-    const ImagePoints points = observed(objectPoints, imagePoints);
-    const CentralView view(camera, points);
-    std::vector<Point2d> chosen;
-    if (view.object.size() < 4 || scatterRank(view.object) < 2)
-        return chosen;
-    const double focalLength = camera.lens().parameters()[0];
-    const double least = std::max(4., LEAST_INLIER_RATIO*(double)points.pixel.size());
-    std::vector<int> inliers;
-    for (double limit = NARROWEST; limit <= WIDEST && (double)inliers.size() < least; limit *= 2)
-    {
-        Vec3d rvec, tvec;
-        if (!solvePnPRansac(view.object, view.normalized, Matx33d::eye(), noArray(), rvec, tvec, false, TRIALS,
-                            (float)(limit/focalLength), 0.9999, inliers, SOLVEPNP_AP3P))
-            inliers.clear();
-    }
-    if ((double)inliers.size() < least)
-        return chosen;
-    chosen.assign(imagePoints.size(), Point2d(NaN, NaN));
-    for (int i : inliers)
-        chosen[points.index[view.point[i]]] = points.pixel[view.point[i]];
-    return chosen;
 }
 
 Pose inCamera1(const Pose& inCamera, const Pose& extrinsics)

@@ -150,25 +150,4 @@ FitOutcome checkPoses(const RigViews& views, const std::vector<Pose>& poses)
     return outcome;
 }
 
-RigViews inlierViews(const Rig& rig, const RigViews& views)
-{
-    RigViews inliers = views;
-    for (int c = 0; c < rig.count(); c++)
-    {
-        const Camera bare = withWindow(rig.cameras[c]);
-        for (int view = 0; view < views.count(); view++)
-        {
-            CameraViews& seen = inliers.cameras[c];
-            const auto keepInliers = [&](const Camera& camera, std::vector<Point2d>& pixels)
-            {
-                if (2*countWhole(pixels) >= countSeen(pixels))      // halves have no rays to sample: they stay
-                    pixels = pointsOfOnePose(camera, views.object[view], pixels);
-            };
-            keepInliers(bare, seen.direct[view]);
-            keepInliers(rig.cameras[c], seen.refracted[view]);
-        }
-    }
-    return inliers;
-}
-
 }} // namespace

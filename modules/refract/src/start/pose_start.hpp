@@ -40,10 +40,6 @@ bool hasPoints(const RigViews& views, int view);
 //! NO_POSE if a view that has points has none.
 FitOutcome checkPoses(const RigViews& views, const std::vector<Pose>& poses);
 
-/** The views without the points that agree with no common pose of their image, to start from. Images without a pose
-become empty. */
-RigViews inlierViews(const Rig& rig, const RigViews& views);
-
 }} // namespace
 
 #endif // OPENCV_REFRACT_POSE_START_HPP
