@@ -215,6 +215,30 @@ std::vector<Minimum> distanceMinima(const Camera& camera, const RigViews& pairs,
     return multiStart(starts, { { FEW_VIEWS, COARSE } }, pairs, flags & GLASS_FREE_DISTANCE);
 }
 
+/** Minima of a window that one camera's images through it tell, with poses that are known or not.
+@param which the views
+@param other the second best */
+std::vector<Minimum> minimaSeenBy(const Rig& rig, int observer, const GlassWindow& window, const RigViews& views,
+                                  const std::vector<Pose>& poses, bool areKnown, int flags, std::vector<int>& which, OtherMinimum& other)
+{
+    RigViews seen = viewsThrough(views, observer, which);
+    if (which.empty() || !(window.normal[2] > 0 && distanceToSurface(window) >= 0))
+        return {};
+    const Camera camera = withWindow(rig.cameras[observer], window);
+    if (areKnown)
+    {
+        const PixelViews direct = withPredicted(rig, observer, views, poses, flags);
+        for (size_t i = 0; i < which.size(); i++)
+            seen.cameras[0].direct[i] = direct[which[i]];
+        return distanceMinima(camera, seen, flags);
+    }
+    std::vector<OtherMinimum> others(1);
+    const std::vector<Minimum> minima = windowMinima(camera, seen, flags);
+    describeOther(minima, others);
+    other = others[0];
+    return minima;
+}
+
 /** The window of one owner.
 @param found what poses a search for it has found: of a window whose distance was not known, others would hide behind it */
 GlassWindow startWindow(const Rig& rig, int owner, const RigViews& views, const std::vector<Pose>& poses, int flags,
@@ -232,37 +256,20 @@ GlassWindow startWindow(const Rig& rig, int owner, const RigViews& views, const 
     if (best < 0 || (areKnown ? isRound || !(flags & GLASS_FREE_DISTANCE) : isSealed))
         return window;
     std::vector<int> which;
-    RigViews seen = viewsThrough(views, best, which);
-    if (which.empty())
+    const Pose& ofOwner = rig.extrinsics[owner], ofBest = rig.extrinsics[best];
+    const std::vector<Minimum> minima =
+        minimaSeenBy(rig, best, transferred(window, ofOwner, ofBest), views, poses, areKnown, flags, which, other);
+    if (minima.empty())
         return window;
-    const GlassWindow seenByBest = transferred(window, rig.extrinsics[owner], rig.extrinsics[best]);
-    if (!(seenByBest.normal[2] > 0 && distanceToSurface(seenByBest) >= 0))
-        return window;
-    const double givenDistance = window.distance;
-    const Camera camera = withWindow(rig.cameras[best], seenByBest);
-    std::vector<OtherMinimum> others(1);
-    std::vector<Minimum> minima;
-    if (areKnown)
-    {
-        const PixelViews direct = withPredicted(rig, best, views, poses, flags);
-        for (size_t i = 0; i < which.size(); i++)
-            seen.cameras[0].direct[i] = direct[which[i]];
-        minima = distanceMinima(camera, seen, flags);
-    }
-    else
-    {
-        minima = windowMinima(camera, seen, flags);
-        describeOther(minima, others);
-    }
     const Minimum& minimum = minima[0];
-    window = transferred(minimum.rig.cameras[0].window(), rig.extrinsics[best], rig.extrinsics[owner]);
+    const double givenDistance = window.distance;
+    window = transferred(minimum.rig.cameras[0].window(), ofBest, ofOwner);
     if (!(flags & GLASS_FREE_DISTANCE))
         window.distance = givenDistance;
     for (size_t i = 0; i < which.size() && (flags & GLASS_FREE_DISTANCE); i++)
         if (i < minimum.poses.size() && minimum.poses[i].found && !found[which[i]].found)
-            found[which[i]] = best == 0 ? minimum.poses[i] : inCamera1(minimum.poses[i], rig.extrinsics[best]);
-    other = others[0];
-    other.window = transferred(other.window, rig.extrinsics[best], rig.extrinsics[owner]);
+            found[which[i]] = best == 0 ? minimum.poses[i] : inCamera1(minimum.poses[i], ofBest);
+    other.window = transferred(other.window, ofBest, ofOwner);
     return window;
 }
 
