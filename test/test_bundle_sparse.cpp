@@ -608,3 +608,75 @@ TEST_CASE("A strip with a tenth of its pixels wrong keeps views, scale and pixel
 {
     checkWrongPixels(20, 40, trials(20));
 }
+
+namespace {
+
+//! d(far pose)/d(near pose), where far t = t - R origin, by differences.
+Mat farByNear(const Mat& rvec, const Vec3d& origin)
+{
+    const double STEP = 1e-6;
+    Mat derivatives = Mat::eye(6, 6, CV_64F);
+    for (int k = 0; k < 3; k++)
+    {
+        Matx33d sides[2];
+        for (int side : { 0, 1 })
+        {
+            Vec3d turned(rvec.ptr<double>());
+            turned[k] += side ? STEP : -STEP;
+            Rodrigues(turned, sides[side]);
+        }
+        Mat(-((sides[1] - sides[0])*origin)*(0.5/STEP)).copyTo(derivatives(Rect(k, 3, 1, 3)));
+    }
+    return derivatives;
+}
+
+} // namespace
+
+TEST_CASE("A scene in survey coordinates is fitted as one whose origin is near", "[bundle][far_origin]")
+{
+    CAPTURE(seed());
+    Random random(31);
+    const RigTruth truth = movingPair();
+    const BundleScene scene = makeMovingScene(truth, 6, 40, random, 0.1, 0.2);
+    for (bool arePosesKnown : { false, true })
+    {
+        const BundleCall start(truth, scene, random, arePosesKnown ? 0 : 0.5);
+        const int flags = GLASS_FREE_DISTANCE | GLASS_FREE_EXTRINSICS | (arePosesKnown ? GLASS_USE_POSES : 0);
+        const Mat known = Mat::diag((Mat_<double>(6, 1) << 1e-8, 2e-8, 1e-8, 25, 36, 49));
+        ListCall near(start);
+        if (arePosesKnown)
+            near.call.poseCovariances.assign(6, known);
+        const double rms = near.run(flags);
+        for (double away : { 1e4, 1e6, 1e8 })           // of 600 mm to the scene
+        {
+            if (arePosesKnown && away > 1e6)            // a covariance about so far an origin has no digits left
+                continue;
+            CAPTURE(arePosesKnown, away);
+            const Vec3d origin = away*normalize(Vec3d(1, 0.5, 0.2));
+            ListCall far(start);
+            for (size_t view = 0; view < far.call.tvecs.size(); view++)
+            {
+                Matx33d R;
+                Rodrigues(far.call.rvecs[view], R);
+                far.call.tvecs[view] = far.call.tvecs[view] - Mat(R*origin);
+                if (!arePosesKnown)
+                    continue;
+                const Mat moved = farByNear(far.call.rvecs[view], origin);
+                far.call.poseCovariances.push_back(moved*known*moved.t());
+            }
+            CHECK(std::abs(far.run(flags) - rms) < 1e-7*rms);
+            const double rounding = 1e-7 + 1e-15*away, relative = 1e-5 + 1e-11*away;    // of covariances that are given
+            CHECK(norm(far.call.cameras[0]->window().normal - near.call.cameras[0]->window().normal) < relative*1e-3);
+            CHECK(largestDifference(far.call.deviations, near.call.deviations) < relative*norm(near.call.deviations));
+            CHECK(largestDifference(far.call.pointDeviations, near.call.pointDeviations) < relative*norm(near.call.pointDeviations));
+            for (size_t i = 0; i < scene.points.size(); i++)
+                CHECK(norm(far.call.points[i] - Point3d(origin) - near.call.points[i]) < (arePosesKnown ? relative : rounding));
+            for (size_t view = 1; view < scene.rvecs.size(); view++)
+            {
+                const Mat moved = farByNear(near.call.rvecs[view], origin);
+                const Mat expected = moved*near.viewCovariances[view]*moved.t();
+                CHECK(norm(far.viewCovariances[view], expected) < 1e-5*norm(expected));
+            }
+        }
+    }
+}

@@ -6,6 +6,7 @@
 
 #include "calibrate/bundle_fit.hpp"
 #include "calibrate/bundle_search.hpp"
+#include "calibrate/near_task.hpp"
 #include "adjust/covariance.hpp"
 #include "adjust/ray_midpoints.hpp"
 #include "adjust/robust_fit.hpp"
@@ -68,9 +69,7 @@ void describe(const Problem& problem, BundleFit& fit)
     fit.poses = problem.poses();
 }
 
-} // namespace
-
-FitOutcome fitBundle(Rig& rig, const BundleTask& task, BundleFit& fit)
+FitOutcome fitNear(Rig& rig, const BundleTask& task, BundleFit& fit)
 {
     Problem problem(rig, task.images.images, task.images.points, task.lengths, task.poses, task.posePriors, task.flags,
                     task.cameraPriors, task.rigCovariance, task.lengthScaleSigma);
@@ -96,6 +95,45 @@ FitOutcome fitBundle(Rig& rig, const BundleTask& task, BundleFit& fit)
     rig = problem.rig();
     toNearestCenters(rig, fit);
     sqrt(max(fit.covariance.diag(), 0), fit.stdDeviations);
+    return outcome;
+}
+
+/** Where camera 1 is in the first view that has an image, if all of them are far from the origin. Then a pose that is held stays where it
+is even if the scene's scale is found. */
+NearOrigin originOf(const BundleTask& task)
+{
+    std::vector<Point3d> centers;
+    const std::vector<bool> isSeen = task.images.seenViews();
+    for (size_t view = 0; view < task.poses.size(); view++)
+        if (isSeen[view])
+            centers.push_back(Point3d(transformOf(task.poses[view]).inverse(Vec3d())));
+    const bool canBeMoved = !centers.empty() && std::all_of(task.posePriors.begin(), task.posePriors.end(), canMove);
+    return canBeMoved ? NearOrigin(centers) : NearOrigin();
+}
+
+} // namespace
+
+FitOutcome fitBundle(Rig& rig, const BundleTask& task, BundleFit& fit)
+{
+    const NearOrigin origin = originOf(task);
+    if (!origin.isMoved())
+        return fitNear(rig, task, fit);
+    BundleTask moved = task;
+    origin.move(moved.points);
+    for (size_t view = 0; view < task.poses.size(); view++)
+        moveNear(origin, moved.poses[view], &moved.posePriors[view]);
+    FitOutcome outcome = fitNear(rig, moved, fit);
+    if (outcome.status == FitOutcome::NO_IMAGE)
+        outcome.point += Point3d(origin.origin());
+    for (Point3d& point : fit.points)
+        point += Point3d(origin.origin());
+    for (size_t view = 0; view < fit.poses.size(); view++)
+    {
+        const Matx66d farByNear = origin.farByNear(fit.poses[view]);
+        if (view < fit.poseCovariances.size() && !fit.poseCovariances[view].empty())
+            fit.poseCovariances[view] = Mat(farByNear)*fit.poseCovariances[view]*Mat(farByNear.t());
+        fit.poses[view] = origin.toFar(fit.poses[view]);
+    }
     return outcome;
 }
 

@@ -9,6 +9,13 @@ namespace cv { namespace refract {
 
 static Eigen::MatrixXd toEigen(const Matx66d& A) { return Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor> >(A.val); }
 
+void moveNear(const NearOrigin& origin, Pose& pose, PosePrior* prior)
+{
+    pose = origin.toNear(pose);
+    if (prior && prior->kind == PosePrior::UNCERTAIN)
+        prior->sqrtInformation = product(prior->sqrtInformation, toEigen(origin.farByNear(pose)));
+}
+
 NearTask::NearTask(const RigTask& given) : task_(given), origins_(given.views.count())
 {
     NearOrigin last;                // one for all targets that it serves: errors that they share are about it
@@ -16,7 +23,7 @@ NearTask::NearTask(const RigTask& given) : task_(given), origins_(given.views.co
     {
         PosePrior* const prior = task_.posePriors.empty() ? nullptr : &task_.posePriors[view];
         // Of a pose that is known in part, what is known is of the target as it was given.
-        if (prior && prior->kind != PosePrior::NONE && !prior->tellsAll())
+        if (prior && !canMove(*prior))
             continue;
         if (!last.isNear(task_.views.object[view]))
             last = NearOrigin(task_.views.object[view]);
@@ -24,12 +31,8 @@ NearTask::NearTask(const RigTask& given) : task_(given), origins_(given.views.co
         if (!origin.isMoved())
             continue;
         origin.move(task_.views.object[view]);
-        if (!prior || prior->kind == PosePrior::NONE)
-            continue;
-        Pose& pose = task_.knownPoses[view];
-        pose = origin.toNear(pose);
-        if (prior->kind == PosePrior::UNCERTAIN)
-            prior->sqrtInformation = product(prior->sqrtInformation, toEigen(origin.farByNear(pose)));
+        if (prior && prior->kind != PosePrior::NONE)
+            moveNear(origin, task_.knownPoses[view], prior);
     }
 }
 

@@ -10,6 +10,12 @@
 
 namespace cv { namespace refract {
 
+/** A pose and what is known of it, of what lies near its origin. Not of a pose that is known in part: that is of the given origin.
+@param pose in: far @param prior may be null */
+void moveNear(const NearOrigin& origin, Pose& pose, PosePrior* prior);
+//! What of a pose is known in all its six numbers, or in none, can be moved.
+inline bool canMove(const PosePrior& prior) { return prior.kind == PosePrior::NONE || prior.tellsAll(); }
+
 //! A task whose targets lie near the origins of their coordinates, and the way back.
 class NearTask
 {
