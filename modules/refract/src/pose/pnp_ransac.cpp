@@ -207,14 +207,21 @@ static void refineOnInliers(const Camera& camera, const ImagePoints& points, con
     }
 }
 
-//! The pose and its inliers; not found if there is none.
-static Pose solveRobustly(const Camera& camera, const ImagePoints& points, double limit, const Effort& effort,
-                          const Pose& guess, std::vector<int>& inliers)
+//! The pose that points agree with best, refined on those that do.
+static Consensus bestConsensus(const Camera& camera, const ImagePoints& points, double limit, const Effort& effort, const Pose& guess)
 {
     const MsacScorer scorer(camera, points, limit);
     Consensus best = searchPose(camera, points, scorer, effort, guess);
     for (int k = 0; k < 10 && localOptimize(camera, points, scorer, 100, best); k++) {}
     refineOnInliers(camera, points, scorer, best);
+    return best;
+}
+
+//! The pose and its inliers; not found if there is none.
+static Pose solveRobustly(const Camera& camera, const ImagePoints& points, double limit, const Effort& effort,
+                          const Pose& guess, std::vector<int>& inliers)
+{
+    const Consensus best = bestConsensus(camera, points, limit, effort, guess);
     const ImagePoints some = select(points, best.inliers);
     const int different = countDifferent(some);
     if (different < 4 || scatterRank(some.object) < 2
@@ -224,26 +231,48 @@ static Pose solveRobustly(const Camera& camera, const ImagePoints& points, doubl
     return poseOf(best.motion);
 }
 
+//! A third of the points right: still 18 samples of three right ones.
+static const Effort OF_ONE_POSE = { 500, 0.9999 };
+
+//! Points that have rays to sample: no halves.
+static ImagePoints wholePoints(const std::vector<Point3d>& objectPoints, std::vector<Point2d> imagePoints)
+{
+    for (Point2d& pixel : imagePoints)
+        if (!isWhole(pixel))
+            pixel = Point2d(1, 1)*std::numeric_limits<double>::quiet_NaN();
+    return observed(objectPoints, imagePoints);
+}
+
+double costOfOnePose(const Camera& camera, const std::vector<Point3d>& objectPoints, const std::vector<Point2d>& imagePoints)
+{
+    const double LIMIT = 8;             // pixels: of a rough window
+    const ImagePoints points = wholePoints(objectPoints, imagePoints);
+    const double most = LIMIT*LIMIT*(double)points.pixel.size();
+    return points.pixel.size() < 4 ? most : std::min(most, bestConsensus(camera, points, LIMIT, OF_ONE_POSE, Pose()).cost);
+}
+
 std::vector<Point2d> pointsOfOnePose(const Camera& camera, const std::vector<Point3d>& objectPoints,
                                      const std::vector<Point2d>& imagePoints)
 {
-    const double NARROWEST = 2, WIDEST = 8;     // pixels: noise plus what a rough window or lens does
-    const Effort effort = { 500, 0.9999 };      // a third of the points right: still 18 samples of three right ones
-    const Point2d missing = Point2d(1, 1)*std::numeric_limits<double>::quiet_NaN();
-    std::vector<Point2d> chosen, whole = imagePoints;
-    for (Point2d& pixel : whole)
-        if (!isWhole(pixel))            // halves have no rays to sample
-            pixel = missing;
-    const ImagePoints points = observed(objectPoints, whole);
+    const double NARROWEST = 2, WIDEST = 32;    // pixels: noise plus what a rough window or lens does
+    const double ALL = 0.9, MORE = 1.25;        // parts: what a wider limit must gain of a wrong window, and does not of wrong points
+    const ImagePoints points = wholePoints(objectPoints, imagePoints);
+    std::vector<Point2d> chosen;
     if (points.pixel.size() < 4)
         return chosen;
-    const double least = std::max(4., LEAST_INLIER_RATIO*(double)points.pixel.size());
+    const double count = (double)points.pixel.size(), least = std::max(4., LEAST_INLIER_RATIO*count);
     std::vector<int> inliers;
-    for (double limit = NARROWEST; limit <= WIDEST && (double)inliers.size() < least; limit *= 2)
-        solveRobustly(camera, points, limit, effort, Pose(), inliers);
+    for (double limit = NARROWEST; limit <= WIDEST && (double)inliers.size() < ALL*count; limit *= 2)
+    {
+        std::vector<int> wider;
+        solveRobustly(camera, points, limit, OF_ONE_POSE, Pose(), wider);
+        if (!inliers.empty() && (double)wider.size() < MORE*(double)inliers.size())
+            break;
+        inliers = wider;
+    }
     if ((double)inliers.size() < least)
         return chosen;
-    chosen.assign(imagePoints.size(), missing);
+    chosen.assign(imagePoints.size(), Point2d(1, 1)*std::numeric_limits<double>::quiet_NaN());
     for (int i : inliers)
         chosen[i] = imagePoints[i];
     return chosen;

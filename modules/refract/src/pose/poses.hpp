@@ -79,6 +79,9 @@ others NaN. Empty if they are fewer than LEAST_INLIER_RATIO, or fewer than 4. */
 std::vector<Point2d> pointsOfOnePose(const Camera& camera, const std::vector<Point3d>& objectPoints,
                                      const std::vector<Point2d>& imagePoints);
 
+//! The least sum of squared errors of such a pose, each cut off at some pixels.
+double costOfOnePose(const Camera& camera, const std::vector<Point3d>& objectPoints, const std::vector<Point2d>& imagePoints);
+
 }} // namespace
 
 #endif // OPENCV_REFRACT_POSES_HPP

@@ -15,44 +15,33 @@ void keepInliers(const Camera& camera, const std::vector<Point3d>& object, std::
         pixels = pointsOfOnePose(camera, object, pixels);
 }
 
-//! Points in images through the window that agree, each image's with a pose of its own.
-int countInliers(const Camera& camera, const RigViews& views, const PixelViews& images)
+//! Of some images through the window, each with a pose of its own.
+double costOfPoses(const Camera& camera, const RigViews& views, int c)
 {
-    int count = 0;
-    for (int view = 0; view < views.count(); view++)
-    {
-        std::vector<Point2d> pixels = images[view];
-        keepInliers(camera, views.object[view], pixels);
-        count += countSeen(pixels);
-    }
-    return count;
+    const int ENOUGH = 3;           // images: the window is refined by all
+    double cost = 0;
+    for (int view = 0, count = 0; view < views.count() && count < ENOUGH; view++)
+        if (countWhole(views.cameras[c].refracted[view]) >= 4)
+        {
+            cost += costOfOnePose(camera, views.object[view], views.cameras[c].refracted[view]);
+            count++;
+        }
+    return cost;
 }
 
-//! The camera behind that place of its window of which most points agree: as given, if nearly all do there.
+//! The camera behind that of several places of its window which most points agree with.
 Camera mostAgreeing(const Camera& given, const RigViews& views, int c)
 {
-    const double NEARLY_ALL = 0.9;
-    const int ENOUGH = 3;           // images: the place is refined by all
-    PixelViews images(views.count());
-    int count = 0, seen = 0;
-    for (int view = 0; view < views.count() && count < ENOUGH; view++)
-    {
-        images[view] = views.cameras[c].refracted[view];
-        seen += countSeen(images[view]);
-        count += !images[view].empty();
-    }
     Camera best = given;
-    int most = countInliers(given, views, images);
-    for (const TiltRing& ring : KNOWN_LENS_TILTS)
+    double least = costOfPoses(given, views, c);
+    for (const TiltRing& ring : AGREEMENT_TILTS)
         for (const WindowPlace& place : placesAround(given.window(), ring.tilt, ring.count, ring.first))
         {
-            if (most >= NEARLY_ALL*seen)
-                return best;
             const Camera other = withWindow(given, withPlace(given.window(), place));
-            const int agree = countInliers(other, views, images);
-            if (agree > most)
+            const double cost = costOfPoses(other, views, c);
+            if (cost < least)
             {
-                most = agree;
+                least = cost;
                 best = other;
             }
         }
@@ -75,6 +64,8 @@ RigViews inlierViews(const Rig& rig, const RigViews& views, int flags)
             keepInliers(bare, views.object[view], seen.direct[view]);
             keepInliers(glazed, views.object[view], seen.refracted[view]);
         }
+        if (!seesAnything(seen.refracted))      // the window is wrong, not all points
+            seen.refracted = views.cameras[c].refracted;
     }
     return inliers;
 }

@@ -7,6 +7,7 @@
 #include "start/window_start.hpp"
 #include "start/coplanarity.hpp"
 #include "start/normal_from_pairs.hpp"
+#include "start/sealed_start.hpp"
 #include "start/shared_window.hpp"
 #include "start/start_table.hpp"
 #include "window/place.hpp"
@@ -116,7 +117,13 @@ std::vector<Minimum> windowMinima(const Camera& camera, const RigViews& views, i
             starts.push_back(start);
     for (const RigStart& start : coplanarTilts(given, views, flags))
         starts.push_back(start);
-    const auto neighbours = [&](const Minimum& best) { return withBetterPoses(best, views); };
+    const auto neighbours = [&](const Minimum& best)
+    {
+        std::vector<RigStart> others = mirrored(best.rig, given, flags);
+        for (const RigStart& other : withBetterPoses(best, views))
+            others.push_back(other);
+        return others;
+    };
     return hillClimb(multiStart(starts, stages, views, flags), neighbours, views, flags);
 }
 
