@@ -24,10 +24,11 @@ enum RigKind { ONE_IN_AIR, STEREO_IN_AIR, STEREO_IN_WATER, SHARED_WINDOW, RIG_KI
 const char* const RIG_NAMES[] = {"one, air", "stereo, air", "stereo, water", "shared window"};
 
 enum Mistake { NONE_AT_ALL, THICKNESS, INDEX, MEDIUM, SQUARE, MOTION, NUDGE, WEDGE, FOCUS, PLACE, TURNED, MIRRORED,
-               SWAPPED_STATES, SWAPPED_CAMERAS, UNPAIRED, UNRELATED, BOARD_SIZE, ALL_TURNED, SHUFFLED, SHAPE };
+               SWAPPED_STATES, SWAPPED_CAMERAS, UNPAIRED, UNRELATED, BOARD_SIZE, ALL_TURNED, SHUFFLED, RENUMBERED, RENUMBERED_GLASS, SHAPE };
 const char* const MISTAKE_NAMES[] = {"none", "thickness", "index", "medium", "square", "boards moved", "boards nudged", "wedge", "focus",
                                      "camera moved", "turned", "mirrored", "direct/glass", "cameras swapped", "unpaired", "unrelated",
-                                     "board size", "all turned", "shuffled", "shape"};
+                                     "board size", "all turned", "shuffled", "renumbered", "glass renumbered",
+                                     "shape"};
 
 const int COLUMNS = 9, ROWS = 6;
 const double BOARD_SQUARE = 25., NOISE = 0.1;
@@ -233,6 +234,14 @@ inline void mirror(std::vector<Point2d>& pixels, Size size)
         std::reverse(pixels.begin() + row, pixels.begin() + row + COLUMNS);
 }
 
+//! The points of a file, whose numbers no image tells: from the opposite corner, or each row from its other end.
+inline void renumber(std::vector<Point2d>& pixels, bool isMirrored)
+{
+    const size_t run = isMirrored ? COLUMNS : pixels.size();
+    for (size_t first = 0; run > 0 && first + run <= pixels.size(); first += run)
+        std::reverse(pixels.begin() + first, pixels.begin() + first + run);
+}
+
 //! Whether a rig can have a mistake, and its images would show it.
 inline bool applies(Mistake mistake, RigKind kind)
 {
@@ -252,7 +261,9 @@ inline bool applies(Mistake mistake, RigKind kind)
     case SWAPPED_CAMERAS:
     case ALL_TURNED:
     case SHUFFLED:
+    case RENUMBERED:
     case UNRELATED: return kind != ONE_IN_AIR;
+    case RENUMBERED_GLASS:
     case TURNED: return true;
     default: return true;
     }
@@ -357,6 +368,14 @@ inline Scene mistaken(Mistake mistake, RigKind kind, unsigned salt)
             }
         alignAgain(view, scene.cameras());
     }
+    const bool isMirrored = salt % 2;
+    for (View& view : views)
+        if (mistake == RENUMBERED || mistake == RENUMBERED_GLASS)
+        {
+            renumber(view.glass[last], isMirrored);
+            if (mistake == RENUMBERED)
+                renumber(view.direct[last], isMirrored);
+        }
     return scene;
 }
 

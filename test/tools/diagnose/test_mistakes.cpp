@@ -36,6 +36,8 @@ std::vector<std::string> namesOf(Mistake mistake)
     case UNPAIRED: return {"--unpaired"};
     case SHUFFLED:
     case UNRELATED: return {"not the same moment"};
+    case RENUMBERED:
+    case RENUMBERED_GLASS: return {"numbered from the o"};
     case SHAPE: return {"--window=dome"};
     case BOARD_SIZE: return {"--size is smaller than the board"};
     default: return {};
@@ -166,6 +168,13 @@ TEST_CASE("Every mistake is called by its name: a sample", "[mistakes][slow]")
                  {FOCUS, ONE_IN_AIR}, {PLACE, STEREO_IN_AIR}, {TURNED, ONE_IN_AIR}, {TURNED, STEREO_IN_WATER}, {MIRRORED, STEREO_IN_AIR},
                  {SWAPPED_STATES, SHARED_WINDOW}, {SWAPPED_CAMERAS, STEREO_IN_AIR}, {ALL_TURNED, STEREO_IN_AIR},
                  {SHUFFLED, STEREO_IN_AIR}}, 1);
+}
+
+TEST_CASE("Points of a file that are numbered from another corner than the others are named", "[mistakes][slow]")
+{
+    std::cout << "seed " << scenes::seed() << '\n';
+    checkMatrix({{RENUMBERED, STEREO_IN_AIR}, {RENUMBERED, STEREO_IN_WATER}, {RENUMBERED_GLASS, ONE_IN_AIR},
+                 {RENUMBERED_GLASS, STEREO_IN_WATER}, {RENUMBERED_GLASS, SHARED_WINDOW}}, 2);
 }
 
 TEST_CASE("A distance that the calibration held stays before the boards while causes are tried", "[mistakes][slow]")

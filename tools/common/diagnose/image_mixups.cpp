@@ -37,6 +37,14 @@ double agreement(const View& view, const std::vector<Point2d>& a, const std::vec
     return sum;
 }
 
+std::vector<Point2d> inOrder(const std::vector<int>& order, const std::vector<Point2d>& pixels)
+{
+    std::vector<Point2d> ordered;
+    for (int i : order)
+        ordered.push_back(pixels[i]);
+    return ordered;
+}
+
 //! A detector names the corners of a changed image by what it looks like: names them as in another image of the view.
 void nameAs(const View& view, const std::vector<Point2d>& reference, std::vector<Point2d>& pixels)
 {
@@ -47,9 +55,7 @@ void nameAs(const View& view, const std::vector<Point2d>& reference, std::vector
         const std::vector<int> order = renumbered(view.objectPoints, {(flips & 1) != 0, (flips & 2) != 0, false});
         if (order.empty())
             continue;
-        std::vector<Point2d> candidate;
-        for (int i : order)
-            candidate.push_back(pixels[i]);
+        const std::vector<Point2d> candidate = inOrder(order, pixels);
         const double value = agreement(view, reference, candidate);
         if (value > best)
         {
@@ -92,9 +98,8 @@ RigData changedBack(const RigData& given, Change change, int camera, bool direct
             else if (change == MIRROR)
             {
                 const std::vector<int> order = renumbered(view.objectPoints, {true, false, false});
-                const std::vector<Point2d> before = *pixels;
-                for (size_t i = 0; i < order.size(); i++)
-                    (*pixels)[i] = before[order[i]];
+                if (!order.empty())
+                    *pixels = inOrder(order, *pixels);
             }
         }
     }
@@ -108,6 +113,39 @@ RigData changedBack(const RigData& given, Change change)
     for (int camera = 0; camera < data.cameraCount; camera++)
         data = changedBack(data, change, camera, false);
     return data;
+}
+
+//! Numbers of points as if they had been counted from another corner.
+RigData numberedBack(const RigData& given, const ImageTurn& by, int camera, ImageState state)
+{
+    RigData data = given;
+    for (View& view : data.views)
+    {
+        const std::vector<int> order = renumbered(view.objectPoints, by);
+        for (ImageState of : {DIRECT_IMAGES, GLASS_IMAGES})
+        {
+            std::vector<Point2d>& pixels = (of == DIRECT_IMAGES ? view.direct : view.glass)[camera];
+            if (!order.empty() && !pixels.empty() && (state == ALL_IMAGES || state == of))
+                pixels = inOrder(order, pixels);
+        }
+    }
+    return data;
+}
+
+struct Numbering
+{
+    ImageTurn turn;
+    const char* words;
+};
+const Numbering NUMBERINGS[] = {{{true, true, false}, "from the opposite corner, turned by 180 degrees"},
+                                {{true, false, false}, "from the other end of each row, mirrored"},
+                                {{false, true, false}, "from the other end of each column, mirrored"}};
+
+std::string sentenceOf(const Numbering& numbering, int camera, ImageState state)
+{
+    const std::string direct = "--direct" + cameraSuffix(camera), glass = "--glass" + cameraSuffix(camera);
+    return "the points of " + (state == ALL_IMAGES ? direct + " and " + glass : state == DIRECT_IMAGES ? direct : glass) + " numbered "
+        + numbering.words + ", unlike those of the other images";
 }
 
 struct Candidate
@@ -212,6 +250,12 @@ MixUps findMixUps(const CalibrationInput& input)
                 if (mayBe(change, camera))
                     attempt({camera}, [=, &data] { return changedBack(data, (Change)change, camera, directToo); }, lenses,
                             sentenceOf((Change)change, data, camera, directToo));
+    for (int camera = 0; camera < data.cameraCount; camera++)
+        for (ImageState state : {GLASS_IMAGES, DIRECT_IMAGES, ALL_IMAGES})
+            for (const Numbering& numbering : NUMBERINGS)
+                if (data.cameraCount > 1 || (state == GLASS_IMAGES && data.countPairs() > 0))
+                    attempt({camera}, [=, &data] { return numberedBack(data, numbering.turn, camera, state); }, lenses,
+                            sentenceOf(numbering, camera, state));
     for (int change = 0; change < CHANGES && data.cameraCount > 1; change++)
         if (mayBe(change, 0))
             attempt(all, [=, &data] { return changedBack(data, (Change)change); }, lenses,
