@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // Ceres writes nothing while the library solves.
-#include "adjust/silence.hpp"
+#include "adjust/ceres_silence.hpp"
 #include <catch2/catch.hpp>
 #include <opencv2/core/utility.hpp>
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "calibration_scenes.hpp"
-#include "pose/three_rays.hpp"
+#include "pose/generalized_p3p.hpp"
 
 using namespace cv;
 using namespace cv::refract;

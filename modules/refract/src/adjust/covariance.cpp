@@ -2,7 +2,8 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-/* Covariance = s^2 A^-1 of the free parameters; s^2: variance of a pixel coordinate, A = R^T R: eliminate.hpp.
+/* Covariance = s^2 A^-1 of the free parameters; s^2: variance of a pixel coordinate, A = R^T R: eliminate.hpp. Rows of what is known
+before (priors) are in R times the standard deviation of a pixel, which is estimated until it is s: so s^2 A^-1 leaves them as they are.
 
 Refused, by name: what R, with each parameter scaled to its own effect, maps to next to nothing, and parameters that are
 required and whose standard deviation is so large that the value is no answer. */
@@ -22,7 +23,7 @@ using Eigen::VectorXd;
 
 // Commercial panes are sold with up to 3 arc minutes: a standard deviation of as much tells nothing.
 const double MAX_WEDGE_SIGMA = 3*CV_PI/180/60;
-// Nobody finds points better than this: without it, noise-free data would seem to determine anything.
+// px, what a detector of points reaches at best: without it, noise-free data would seem to determine anything.
 const double LEAST_SIGMA = 0.01;
 
 struct FreeParameter

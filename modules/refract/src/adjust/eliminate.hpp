@@ -22,7 +22,7 @@ struct InnerBlock
     bool isDetermined = true;
 };
 
-//! What all images tell of the cameras' parameters when all others are unknown.
+//! What all images, and what is known before, tell of the cameras' parameters when all others are unknown.
 struct Information
 {
     Eigen::MatrixXd root;           //!< R, R^T R = information for unit pixel noise

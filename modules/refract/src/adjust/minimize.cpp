@@ -16,7 +16,7 @@ below what the noise does. */
 #include "adjust/damped_steps.hpp"
 #include "adjust/inner.hpp"
 #include "adjust/reduced_cost.hpp"
-#include "adjust/silence.hpp"
+#include "adjust/ceres_silence.hpp"
 #include "math/dense.hpp"
 #include "window/place.hpp"
 #include <ceres/manifold.h>

@@ -23,7 +23,7 @@ are tied to it, only the worst goes at a time, with those that cannot be told ap
 
 namespace cv { namespace refract {
 
-// px: nobody finds points better than this; without it, what is known would lose all weight where data are perfect.
+// px, a numerical floor: without it, what is known would lose all weight where data are perfect.
 static const double LEAST_PIXEL_SIGMA = 1e-3;
 
 RobustFit::RobustFit(Problem& problem, Outliers& outliers, bool isRobust, int seenCount, const TermCriteria& criteria)
@@ -57,7 +57,7 @@ FitOutcome RobustFit::approach()
     return isRobust_ ? reweightGradually() : minimize(problem_, few, damping_, LEAST_GAIN);
 }
 
-//! Distances of predicted from observed pixels, of what may have a say; of halves as large as those of whole pixels usually are.
+//! Distances of predicted from observed pixels, of candidates; of halves as large as those of whole pixels usually are.
 std::vector<std::vector<double> > RobustFit::errors() const
 {
     const double HALF = std::sqrt(std::log(4.))/0.6744898;      // between the medians of two coordinates' length and of one's
@@ -97,7 +97,7 @@ std::vector<double> RobustFit::imageScales(const std::vector<std::vector<double>
     return scales;
 }
 
-//! Of the images that have a say.
+//! Of the images whose weight is not zero.
 static double medianScale(const std::vector<double>& scales, const std::vector<std::vector<double> >& errors)
 {
     std::vector<double> some;

@@ -7,7 +7,7 @@ and none is left alone. So cameras come near by points of which no other minimum
 whenever the cameras have moved. */
 
 #include "calibrate/bundle_search.hpp"
-#include "adjust/other_points.hpp"
+#include "adjust/point_minima.hpp"
 #include "adjust/ray_midpoints.hpp"
 #include "math/robust_scale.hpp"
 #include "start/multi_start.hpp"

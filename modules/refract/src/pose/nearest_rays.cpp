@@ -5,7 +5,7 @@
 #include "pose/nearest_rays.hpp"
 #include "math/least_squares.hpp"
 #include "math/rotation.hpp"
-#include "pose/three_rays.hpp"
+#include "pose/generalized_p3p.hpp"
 
 namespace cv { namespace refract {
 

@@ -2,14 +2,14 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-/* Pose of a target among wrong matches. Random samples of three points give poses (three_rays.hpp); all points score a pose by
+/* Pose of a target among wrong matches. Random samples of three points give poses (generalized_p3p.hpp); all points score a pose by
 their squared distances from its images, cut off at the limit (MSAC: @cite TorrZisserman2000). A pose with a lower cost than
 all before is refined on its inliers (LO-RANSAC: @cite ChumMatasKittler2003). */
 
-#include "pose/chance.hpp"
+#include "pose/a_contrario.hpp"
 #include "pose/consensus.hpp"
 #include "pose/pose_covariance.hpp"
-#include "pose/three_rays.hpp"
+#include "pose/generalized_p3p.hpp"
 #include "arrays/arrays.hpp"
 #include "math/robust_scale.hpp"
 #include "math/rotation.hpp"

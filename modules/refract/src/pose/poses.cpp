@@ -7,12 +7,12 @@
 Start: every pixel's ray has its own origin; about the mean origin the rays are nearly central, so the pose is
 found by cv::solvePnP on the rays' directions, in a frame that looks along their mean (wide lenses see beyond 90 degrees),
 and moved by the mean origin. A planar target has two such poses (IPPE gives both); the likelihood decides. Few points in space
-have several minima as well, of which the closed form knows one: all poses of three of them are starts (three_rays.hpp). */
+have several minima as well, of which the closed form knows one: all poses of three of them are starts (generalized_p3p.hpp). */
 
 #include "pose/poses.hpp"
 #include "pose/central_pose.hpp"
 #include "pose/nearest_rays.hpp"
-#include "pose/three_rays.hpp"
+#include "pose/generalized_p3p.hpp"
 #include "arrays/arrays.hpp"
 #include "arrays/views.hpp"
 #include "math/least_squares.hpp"

@@ -10,7 +10,7 @@ Of a flat scene the likelihood has two minima far apart, equal without windows. 
 elsewhere, and where two ends are as likely there is no answer. */
 
 #include "pose/central_pose.hpp"
-#include "pose/chance.hpp"
+#include "pose/a_contrario.hpp"
 #include "pose/pose_covariance.hpp"
 #include "pose/relative_estimate.hpp"
 #include "pose/relative_search.hpp"

@@ -6,7 +6,7 @@
 
 #include "pose/near_origin.hpp"
 #include "pose/poses.hpp"
-#include "pose/three_rays.hpp"
+#include "pose/generalized_p3p.hpp"
 #include "arrays/arrays.hpp"
 
 namespace cv { namespace refract {

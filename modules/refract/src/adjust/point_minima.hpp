@@ -2,8 +2,8 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_REFRACT_OTHER_POINTS_HPP
-#define OPENCV_REFRACT_OTHER_POINTS_HPP
+#ifndef OPENCV_REFRACT_POINT_MINIMA_HPP
+#define OPENCV_REFRACT_POINT_MINIMA_HPP
 
 #include "adjust/problem.hpp"
 
@@ -18,4 +18,4 @@ std::vector<Point3d> pointsOfOneMinimum(Problem& problem);
 
 }} // namespace
 
-#endif // OPENCV_REFRACT_OTHER_POINTS_HPP
+#endif // OPENCV_REFRACT_POINT_MINIMA_HPP

@@ -2,7 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "pose/three_rays.hpp"
+#include "pose/generalized_p3p.hpp"
 
 namespace cv { namespace refract {
 

@@ -2,8 +2,8 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_REFRACT_THREE_RAYS_HPP
-#define OPENCV_REFRACT_THREE_RAYS_HPP
+#ifndef OPENCV_REFRACT_GENERALIZED_P3P_HPP
+#define OPENCV_REFRACT_GENERALIZED_P3P_HPP
 
 #include "arrays/views.hpp"
 #include "camera/camera.hpp"
@@ -54,4 +54,4 @@ struct PointRays
 
 }} // namespace
 
-#endif // OPENCV_REFRACT_THREE_RAYS_HPP
+#endif // OPENCV_REFRACT_GENERALIZED_P3P_HPP

@@ -2,8 +2,8 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_REFRACT_SILENCE_HPP
-#define OPENCV_REFRACT_SILENCE_HPP
+#ifndef OPENCV_REFRACT_CERES_SILENCE_HPP
+#define OPENCV_REFRACT_CERES_SILENCE_HPP
 
 namespace cv { namespace refract {
 
@@ -20,4 +20,4 @@ public:
 
 }} // namespace
 
-#endif // OPENCV_REFRACT_SILENCE_HPP
+#endif // OPENCV_REFRACT_CERES_SILENCE_HPP

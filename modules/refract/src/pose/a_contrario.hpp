@@ -2,8 +2,8 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_REFRACT_CHANCE_HPP
-#define OPENCV_REFRACT_CHANCE_HPP
+#ifndef OPENCV_REFRACT_A_CONTRARIO_HPP
+#define OPENCV_REFRACT_A_CONTRARIO_HPP
 
 #include "precomp.hpp"
 
@@ -27,4 +27,4 @@ Size2d extentOf(const std::vector<Point2d>& pixels);
 
 }} // namespace
 
-#endif // OPENCV_REFRACT_CHANCE_HPP
+#endif // OPENCV_REFRACT_A_CONTRARIO_HPP

@@ -10,7 +10,7 @@ at one of two places on its own, those at the right distance from the first. Wha
 on four branches. Their product has no square root: a polynomial of degree 8 in x (Nister and Stewenius, A minimal solution to the
 generalised 3-point pose problem, 2007), which is interpolated where all branches are real. */
 
-#include "pose/three_rays.hpp"
+#include "pose/generalized_p3p.hpp"
 #include "math/monotone.hpp"
 
 namespace cv { namespace refract {

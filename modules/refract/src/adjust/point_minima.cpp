@@ -7,7 +7,7 @@ sees half a pixel, along one ray. The length holds at both s of |X + s d - o| = 
 at either, as the images of cameras that are not yet where they should be have it. Starts are the other s of each end of each length,
 and the points where images alone have them. */
 
-#include "adjust/other_points.hpp"
+#include "adjust/point_minima.hpp"
 #include "adjust/inner.hpp"
 #include "math/dense.hpp"
 
