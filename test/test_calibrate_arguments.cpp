@@ -144,7 +144,7 @@ TEST_CASE("Where the optimum touches the window, that is said, and not to iterat
     CAPTURE(seed());
     Random random(3530);
     int touching = 0;
-    const int calibrations = trials(12);
+    const int calibrations = trials(5);
     for (int trial = 0; trial < calibrations; trial++)
     {
         const GlassWindow wall(Vec3d(random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1), 1), 20, 1.5, 100, 1.333);
