@@ -197,3 +197,93 @@ TEST_CASE("Where the optimum touches the window, that is said, and not to iterat
     std::cout << "[numbers] optimum that touches the window: in " << touching << " of " << calibrations << " calibrations" << std::endl;
     CHECK(touching > 0);
 }
+
+TEST_CASE("An empty rotation is none where it may not be left out", "[calibrate_arguments]")
+{
+    Random random(3560);
+    const RigTruth truth = makeRig(2, { 0, 1 }, 1.333);
+    const Ptr<RefractiveCamera> first = truth.cameras[0], second = truth.cameras[1];
+    const Vec3d T = truth.Ts[1];
+    const std::vector<Point2d> pixels(1, Point2d(640, 480));
+    const std::vector<Point3d> points(1, Point3d(0, 0, 600));
+    std::vector<Point3d> found;
+    std::vector<Point2d> projected;
+    Mat status;
+    std::vector<Mat> lines;
+    CHECK_THROWS_WITH(triangulateRefractive(first, second, Mat(), T, pixels, pixels, found), Contains("R is empty"));
+    CHECK_THROWS_WITH(triangulateRefractive({ first, second }, { Mat::eye(3, 3, CV_64F), Mat() }, { Mat(Vec3d()), Mat(T) },
+                                            { Mat(pixels), Mat(pixels) }, found), Contains("Rs[1] is empty"));
+    CHECK_THROWS_WITH(refractiveProjectPoints(points, noArray(), T, first, projected), Contains("rvec is empty"));
+    CHECK_THROWS_WITH(computeRefractiveEpilines(pixels, 1, first, second, Mat(), T, Vec2d(300, 900), 5, lines, status),
+                      Contains("R is empty"));
+    refractiveUndistortPoints(pixels, projected, first, 600., noArray(), noArray(), status);      // may be left out
+    CHECK(countNonZero(status) == 0);
+}
+
+TEST_CASE("R and Rs that are rotation vectors become those of the rig", "[calibrate_arguments]")
+{
+    CAPTURE(seed());
+    Random random(3570);
+    const RigTruth truth = makeRig(2, { 0, 1 }, 1.333);
+    const RigScene scene = makeRigScene(truth, 6, random, 0.1);
+    RigCall call(truth, scene, true), same(truth, scene, true);
+    call.run(GLASS_FREE_EXTRINSICS);
+    std::vector<Vec3d> Rs, Ts;
+    for (int c = 0; c < 2; c++)
+    {
+        Vec3d rvec;
+        Rodrigues(same.Rs[c], rvec);
+        Rs.push_back(rvec);
+        Ts.push_back(Vec3d(same.Ts[c]));
+    }
+    std::vector<Mat> rvecs, tvecs;
+    Vec3d R = Rs[1];
+    Mat T(Ts[1], true);
+    calibrateGlassRig(same.object, same.direct, same.refracted, same.cameras, same.windows, Rs, Ts, rvecs, tvecs,
+                      GLASS_FREE_EXTRINSICS, TermCriteria(3, 1000, 1e-12));
+    Vec3d expected;
+    Rodrigues(call.Rs[1], expected);
+    CHECK(norm(Rs[1] - expected) < 1e-12);
+    RigCall pair(truth, scene, true);
+    stereoCalibrateGlass(pair.object, pair.direct[0], pair.refracted[0], pair.direct[1], pair.refracted[1], pair.cameras[0],
+                         pair.cameras[1], R, T, rvecs, tvecs, noArray(), noArray(), noArray(), GLASS_FREE_EXTRINSICS);
+    CHECK(norm(R - expected) < 1e-6);
+    // What has no room for R leaves the cameras as they were.
+    RigCall kept(truth, scene, true);
+    std::vector<Vec3f> floats(2);
+    const Vec3d before = kept.cameras[0]->window().normal;
+    std::vector<Vec3d> places = Ts;
+    for (int c = 0; c < 2; c++)
+        floats[c] = Rs[c];
+    CHECK_THROWS_WITH(calibrateGlassRig(kept.object, kept.direct, kept.refracted, kept.cameras, kept.windows, floats, places, rvecs,
+                                        tvecs, GLASS_FREE_EXTRINSICS), Contains("Rs must be"));
+    CHECK(kept.cameras[0]->window().normal == before);
+}
+
+TEST_CASE("In air the distance of a pane may be free if its faces are not parallel planes", "[calibrate_arguments]")
+{
+    CAPTURE(seed());
+    Random random(3580);
+    GlassWindow pane({ 0.2, 0.1, 1 }, 20, 1.5, 250);
+    for (bool isWedge : { true, false })
+    {
+        GlassWindow window = pane;
+        if (isWedge)
+            window.wedge = { Vec2d(0.02, -0.01) };
+        RigTruth truth;
+        truth.windows = { 0 };
+        truth.Rs = { Matx33d::eye() };
+        truth.Ts = { Vec3d() };
+        truth.cameras = { paperCamera(window) };
+        const RigScene scene = makeRigScene(truth, 6, random, 0.05);
+        RigCall call(truth, scene, true);
+        CAPTURE(isWedge);
+        if (!isWedge)
+        {
+            CHECK_THROWS_WITH(call.run(GLASS_FREE_DISTANCE), Contains("parallel planes"));
+            continue;
+        }
+        call.run(GLASS_FREE_DISTANCE);
+        CHECK(std::abs(call.cameras[0]->window().distance - 250) < 5*call.deviations.at<double>(call.cameras[0]->lensParameters().rows + 3));
+    }
+}

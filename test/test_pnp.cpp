@@ -440,3 +440,36 @@ TEST_CASE("No pose is false, bad arguments are named", "[pnp]")
     CHECK_THAT(thrown([&] { refractiveSolvePnP(object, pixels, Ptr<RefractiveCamera>(), r, t); }),
                Catch::Contains("camera is empty"));
 }
+
+TEST_CASE("Three points that are left of more have no pose, unless one is guessed", "[pnp]")
+{
+    // They have up to eight exact ones: any would be returned with an error of 0.
+    Random random(231);
+    const Ptr<RefractiveCamera> camera = paperCamera(paper::pane());
+    const Vec3d rvec(0.2, -0.1, 0.3), tvec(10, 20, 700);
+    const Point2d missing(std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN());
+    for (bool areCopies : { false, true })
+        for (int trial = 0; trial < 20; trial++)
+        {
+            CAPTURE(areCopies, trial, seed());
+            std::vector<Point3d> object;
+            for (int i = 0; i < 5; i++)
+                object.push_back({ random.uniform(-80, 80), random.uniform(-80, 80), random.uniform(-30, 30) });
+            std::vector<Point2d> pixels = seen(object, rvec, tvec, camera, random, 0);
+            for (int i : { 1, 4 })
+            {
+                object[i] = areCopies ? object[0] : object[i];
+                pixels[i] = areCopies ? pixels[0] : missing;
+            }
+            Mat r, t, error, covariance;
+            std::vector<Mat> rs, ts;
+            CHECK_FALSE(refractiveSolvePnP(object, pixels, camera, r, t, false, error));
+            CHECK_FALSE(refractiveSolvePnP(object, pixels, camera, r, t, false, error, covariance, 0.3));
+            CHECK((r.empty() && t.empty() && error.empty() && covariance.empty()));
+            CHECK(refractiveSolvePnPGeneric(object, pixels, camera, rs, ts) == 0);
+            r = Mat(rvec + random.vector(0.01), true);
+            t = Mat(tvec + random.vector(1), true);
+            REQUIRE(refractiveSolvePnP(object, pixels, camera, r, t, true, error));
+            CHECK(norm(t, Mat(tvec)) < 1e-6*norm(tvec));
+        }
+}

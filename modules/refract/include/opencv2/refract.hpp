@@ -32,19 +32,22 @@ without a window.
   Behind a window with a wedge or a curvature the ray misses the axis by little, and the origin is a point of the ray near it.
   Behind a dome the axis is the one through the dome's centre. Behind a tube the origin is a point of the ray near the camera.
 - **Points without a solution**: such a point becomes NaN in every output coordinate, and `status` (CV_8U, one per point, see
-  RefractiveStatus) gives the reason. One bad point never throws and never changes the others.
+  RefractiveStatus) gives the reason. One bad point never throws and never changes the others. Only the object points of poses
+  and calibrations must be finite.
 - **Errors**: a bad *argument* (wrong type, shape or size, non-finite parameter, non-unit normal, thickness < 0,
-  index < 1) throws cv::Exception. Its text gives the name of the argument and its value. Empty input gives empty output; only
-  calibrations and bundle adjustment refuse it. Those without an answer throw CalibrationError, a cv::Exception too.
+  index < 1) throws cv::Exception. Its text gives the name of the argument and its value. Empty arrays of points, pixels or
+  disparities give empty output; only calibrations and bundle adjustment refuse them. Those without an answer throw
+  CalibrationError, a cv::Exception too.
 - **Without Ceres**: calibrateGlass, stereoCalibrateGlass, calibrateGlassRig and refractiveBundleAdjust need Ceres. In a build
   without it they throw with the code Error::StsNotImplemented, and the text says what to install. All other functions work.
 - **Arrays**: points as in calib3d: Nx1 or 1xN with 2 (3) channels, Nx2 (Nx3) with one channel, 2xN (3xN) with one
   channel (2x2 and 3x3 are a point a row), std::vector; float32 or float64; non-continuous views included, as inputs and
-  as outputs. Computation is in double. Outputs are Nx1 with channels and have the input's depth unless the caller fixed
-  the type. Depths of the scene (z) may have any type of numbers. Rotations of several cameras: std::vector of Mat or
-  Matx33d, or rotation vectors.
-- **Object coordinates** may have any origin, except where poses are known in part, and in bundles: survey coordinates lose no
-  more than their own rounding.
+  as outputs. Computation is in double. Outputs are Nx1 with channels and have the input's depth (of float32 and float64:
+  float64) unless the caller fixed the type; a caller's array of one row keeps that shape. Depths of the scene (z) may have any
+  type of numbers. Rotations of several cameras: std::vector of Mat or Matx33d, or rotation vectors (as a result, too, in a
+  std::vector<Vec3d>). A rotation matrix may be off by 1e-3, as a printed one is: the nearest rotation is taken.
+- **Object coordinates** may have any origin, except where poses are known in part: survey coordinates lose no more than their
+  own rounding.
 - **Infinity**: where a far end may be infinite, DBL_MAX or more also means infinity.
 - **Half pixels**: triangulateRefractive for any number of cameras, refractiveSolvePnP, refractiveSolvePnPGeneric,
   calibrateGlassRig and refractiveBundleAdjust take pixels of which one coordinate is NaN: observations of the other one. So a
@@ -101,8 +104,8 @@ namespace cv { namespace refract {
 enum RefractiveStatus {
     REFRACT_OK = 0,
     REFRACT_NOT_FINITE = 1,         //!< the input point (or its depth) is NaN or infinite
-    REFRACT_BEHIND_CAMERA = 2,      //!< the point lies behind the camera (or, after R, behind the rectified camera)
-    REFRACT_BEHIND_WINDOW = 3,      //!< the point lies before or inside the window, or the ray never reaches it
+    REFRACT_BEHIND_CAMERA = 2,      //!< behind a camera without a window (or, after R, behind the rectified one)
+    REFRACT_BEHIND_WINDOW = 3,      //!< before or inside the window, so also behind the camera; or no ray reaches it
     REFRACT_TOTAL_REFLECTION = 4,   //!< no light path exists: total reflection in a layer
     REFRACT_OUTSIDE_LENS_MODEL = 5, //!< outside the range where the lens model is one-to-one
     REFRACT_NOT_CONVERGED = 6,      //!< the iteration did not reach its tolerance
@@ -139,7 +142,8 @@ enum RectifyFlags {
 
 /** @brief Flags of calibrateGlass, stereoCalibrateGlass, calibrateGlassRig and refractiveBundleAdjust. The place of a window is
 free unless GLASS_FIX_NORMAL is set: a pane's normal, a dome's centre, a tube's centre and axis. A flag whose parameter a window
-does not have is refused: a dome has no distance and no wedge, a pane no radius.
+does not have is refused: a dome has no distance and no wedge, a pane no radius. The values are not those of cv::CALIB_..., and
+must not be mixed with them.
 
 With GLASS_FREE_INTRINSICS the coefficients that the lens has are estimated, also if they are 0 at the start: a lens without
 coefficients stays without distortion, one with 4 gets k1, k2, p1, p2, and so on. A GLASS_FIX_... flag keeps a parameter at its
@@ -155,14 +159,14 @@ itself.
 enum GlassCalibrationFlags {
     GLASS_FREE_THICKNESS = 1,       //!< thickness of every layer
     GLASS_FREE_INDEX = 2,           //!< index of every layer
-    GLASS_FREE_DISTANCE = 4,        //!< distance; an error with equal inner and outer media, where it has no effect
+    GLASS_FREE_DISTANCE = 4,        //!< distance; an error with equal media and parallel plane faces: no effect
     GLASS_FREE_OUTER_INDEX = 8,     //!< index of the scene's medium
     GLASS_FREE_INTRINSICS = 16,     //!< all lens parameters (overloads with RefractiveCamera only)
     GLASS_FREE_EXTRINSICS = 32,     //!< R and T (stereoCalibrateGlass, calibrateGlassRig, refractiveBundleAdjust)
     GLASS_SHARED_WINDOW = 64,       //!< both cameras look through one pane (stereoCalibrateGlass only)
     GLASS_FIX_PRINCIPAL_POINT = 128,    //!< with GLASS_FREE_INTRINSICS: cx and cy stay
     GLASS_ROBUST = 256,             //!< reject outliers, points and images; without: maximum likelihood of all points
-    GLASS_USE_POSES = 512,          //!< the views' poses are known (the Extended forms only)
+    GLASS_USE_POSES = 512,          //!< the views' poses are known (long forms of rigs and bundles only)
     GLASS_FIX_FOCAL_LENGTH = 1024,  //!< fx and fy stay
     GLASS_FIX_K1 = 2048,            //!< k1 stays; the other GLASS_FIX_K alike (a fisheye lens has k1 to k4)
     GLASS_FIX_K2 = 4096,
@@ -173,7 +177,7 @@ enum GlassCalibrationFlags {
     GLASS_FIX_TANGENT_DIST = 131072,    //!< p1 and p2 stay
     GLASS_FIX_S1_S2_S3_S4 = 262144,     //!< the thin prism's coefficients stay
     GLASS_FIX_TAUX_TAUY = 524288,       //!< the sensor's tilt stays
-    GLASS_FIX_NORMAL = 1048576,         //!< windows stay (of a rig, of a bundle) unless cameraCovariances free them
+    GLASS_FIX_NORMAL = 1048576,         //!< places of windows stay unless a covariance frees them (rigs, bundles only)
     GLASS_REQUIRE_WINDOW = 2097152,     //!< refuse a sealed rig if a free parameter of a window is not determined by itself
     GLASS_REQUIRE_INTRINSICS = 4194304, //!< the same of a lens; of a focal length by boards without a window, to 10 %
     GLASS_REQUIRE_EXTRINSICS = 8388608, //!< the same of R and T
@@ -302,7 +306,7 @@ public:
     CV_WRAP static GlassWindow tube(const Vec3d& axisPoint, const Vec3d& axisDirection, double radius, double thickness,
                                     double index, double outerIndex = 1.);
 
-    CV_PROP_RW int shape;                      //!< a WindowShape; what the other shape has keeps its initial value
+    CV_PROP_RW int shape;                      //!< a WindowShape; what only other shapes have must keep its initial value
     CV_PROP_RW Vec3d normal;                   //!< flat, bent: unit, camera coordinates, normal[2] > 0
     CV_PROP_RW double distance;                //!< flat, bent: from the camera to the first surface, along the normal
     /** dome: of the spheres; tube: a point of the axis, after a calibration the one nearest to the camera; camera frame */
@@ -312,7 +316,7 @@ public:
     /** Bent: 1/radius of the first face, a sphere across the normal that meets it at the distance; positive where its centre is
     on the camera's side. The other faces are spheres about the same point. 0: planes. */
     CV_PROP_RW double curvature;
-    CV_PROP_RW std::vector<double> thickness;  //!< of each layer, from the camera outwards, >= 0
+    CV_PROP_RW std::vector<double> thickness;  //!< of each layer, from the camera outwards, >= 0; > 0 with a wedge
     CV_PROP_RW std::vector<double> index;      //!< of each layer
     CV_PROP_RW double innerIndex;              //!< of the medium round the camera
     CV_PROP_RW double outerIndex;              //!< of the scene's medium
@@ -480,7 +484,9 @@ file.
     CV_WRAP virtual void setWindow(const GlassWindow& window) = 0;
     //! What the rows of stdDeviations and covariance of a calibration are, in their order: "fx", "fy", "cx", "cy", "k1", ...,
     //! "normal[0]", "normal[1]", "normal[2]", "distance", "thickness[0]", ..., "index[0]", ..., "innerIndex", "outerIndex"
-    //! and, of a window whose `wedge` is not empty, "wedge[0][0]", "wedge[0][1]", "wedge[1][0]", ...
+    //! and, of a window whose `wedge` is not empty, "wedge[0][0]", "wedge[0][1]", "wedge[1][0]", ...; of a dome "center[0]",
+    //! ..., "radius" in place of normal and distance, of a tube "center[0]", ..., "axis[0]", ..., "radius"; of a bent pane
+    //! "curvature" last.
     CV_WRAP virtual std::vector<String> parameterNames() const = 0;
     //! fx, fy, cx, cy, coefficients (control points of splines are in distCoeffs(), see refractiveSplineWeights) as the
     //! jacobian's columns, Nx1 CV_64F.
@@ -633,8 +639,8 @@ As in cv::undistortPoints, the result is normalised coordinates without P, and p
 @param distCoeffs 0, 4, 5, 8, 12 or 14 coefficients.
 @param window see GlassWindow.
 @param depth z > 0 of the scene points, camera frame; infinity is allowed. There is no default, because the correction depends
-on it: a window between equal media has no effect on an infinitely far scene. For a camera without a window the depth has no
-effect and may be 0 (Python: None).
+on it: a window with parallel faces between equal media has no effect on an infinitely far scene. For a camera without a window
+a positive depth has no effect and may be 0 (Python: None).
 @param R rotation camera -> rectified camera, 3x3 or rotation vector; omitted = identity.
 @param P new camera matrix 3x3 or projection matrix 3x4 (its left 3x3 is used); omitted = identity.
 @param status Nx1 CV_8U, see RefractiveStatus.
@@ -655,8 +661,8 @@ CV_EXPORTS_W void refractiveUndistortPoints(InputArray src, OutputArray dst, con
 @param window see GlassWindow.
 @param depth z of the scene points, camera frame: one number for all, or N numbers. An invalid depth sets only the status of
 its own point. (d, 0, 0, 0) means the number d, because Scalar(d) is such an array. For exactly four points this is ambiguous
-and is refused: give a double, or an array of one number. For a camera without a window the depth has no effect and may be
-empty.
+and is refused: give a double, or an array of one number; a plane is not taken here. Depths that are not positive have the status
+REFRACT_BEHIND_WINDOW, without a window REFRACT_NO_INTERSECTION; positive ones have no effect there, and the array may be empty.
 @param R rotation camera -> rectified camera, 3x3 or rotation vector; omitted = identity.
 @param P new camera matrix 3x3 or projection matrix 3x4 (its left 3x3 is used); omitted = identity.
 @param status Nx1 CV_8U, see RefractiveStatus.
@@ -1262,7 +1268,7 @@ targets.
 @param imagePointsDirect the same points of the same, unmoved target seen without the window; noArray() or an empty view if
 there are none. NaN: the point was not seen.
 @param imagePointsRefracted the points seen through the window, one array per view. NaN: the point was not seen. A view may be
-empty if its direct one is not.
+empty if its direct one is not; without both its pose is NaN.
 @param cameraMatrix 3x3.
 @param distCoeffs 0, 4, 5, 8, 12 or 14 coefficients.
 @param window in: the known values and, if all views are through the window only, the initial normal. With pairs the initial
@@ -1302,7 +1308,7 @@ CV_EXPORTS_W double calibrateGlass(InputArrayOfArrays objectPoints, InputArrayOf
 @param rvecs as above.
 @param tvecs as above.
 @param stdDeviations Px1 CV_64F: one standard deviation of each parameter, in the order of columns 6... of
-refractiveProjectPoints' jacobian (lens, normal, distance, thickness, index, innerIndex, outerIndex, wedge); 0 where fixed.
+refractiveProjectPoints' jacobian, which is that of RefractiveCamera::parameterNames(); 0 where fixed.
 @param covariance PxP CV_64F in the same order, scaled by the residuals.
 @param perViewErrors Vx2 CV_64F: RMS of each view direct and through the window; NaN where there is none.
 @param jacobian 2M x (P + 6 V) CV_64F of all M observed points at the solution: view by view, direct before refracted;
@@ -1337,8 +1343,9 @@ CV_EXPORTS_AS(calibrateGlassExtended) double calibrateGlass(InputArrayOfArrays o
 @param imagePointsRefracted2 per view, camera 2 through its window.
 @param camera1 initial value and result.
 @param camera2 initial value and result.
-@param R 3x3, camera 1 -> camera 2; result with GLASS_FREE_EXTRINSICS.
-@param T 3x1.
+@param R 3x3 or rotation vector, camera 1 -> camera 2; result with GLASS_FREE_EXTRINSICS, 3x3 CV_64F (a Vec3d stays a rotation
+vector).
+@param T 3x1; result as R.
 @param rvecs object -> camera 1 of each view.
 @param tvecs object -> camera 1 of each view.
 @param stdDeviations Px1: parameters of camera 1, of camera 2 (as calibrateGlass), then rvec (3) and T (3) of camera 2.
@@ -1390,7 +1397,8 @@ none. A view of which no camera has an image counts for nothing; its pose become
 @param windowOfCamera per camera: the index of its window. Cameras with equal numbers share one window; empty: each camera has
 its own. The initial value of a shared window is that of its first camera; for the others it follows from R and T.
 @param Rs 3x3 rotation (or rotation vector) camera 1 -> camera, one per camera; the first is the identity, within rounding.
-Result with GLASS_FREE_EXTRINSICS. Not used for one camera. May be empty, with Ts, for a sealed rig with GLASS_FREE_EXTRINSICS.
+Result with GLASS_FREE_EXTRINSICS, or where cameraCovariances leaves them open. Not used for one camera. May be empty, with Ts,
+for a sealed rig with GLASS_FREE_EXTRINSICS.
 @param Ts 3x1, as Rs.
 @param rvecs object -> camera 1 rotation vector of each view; with GLASS_USE_POSES also input. NaN for a view whose
 observations are all rejected.
@@ -1582,7 +1590,8 @@ Both NaN: not seen in that image. An empty array: there is no image.
 @param cameras one per camera, initial value and result: window and, with GLASS_FREE_INTRINSICS, lens.
 @param windowOfCamera per camera: the index of its window, as in calibrateGlassRig; empty: each camera has its own.
 @param Rs 3x3 rotation (or rotation vector) camera 1 -> camera, one per camera; the first is the identity, within rounding.
-Initial value and, with GLASS_FREE_EXTRINSICS, result. Not used for one camera.
+Initial value; result with GLASS_FREE_EXTRINSICS, or where cameraCovariances or rigCovariance leave them open. Not used for one
+camera.
 @param Ts 3x1, as Rs.
 @param rvecs scene -> camera 1 rotation vector of each view, initial value and result; with one view it may be empty.
 @param tvecs scene -> camera 1 translation of each view; as rvecs.
@@ -1712,9 +1721,9 @@ CV_EXPORTS_W double refractiveBundleAdjust(InputArrayOfArrays imagePoints,
 @param tvec object -> camera translation.
 @param useExtrinsicGuess rvec, tvec are the initial values.
 @param reprojectionError 1x1 CV_64F, pixels: RMS of the coordinates' differences, as in cv::solvePnPGeneric.
-@return false if there is no pose: there are no points, fewer than 4 (3 with useExtrinsicGuess) were seen, they lie on a line,
-or no pose gives all of them an image. Then rvec and tvec are unchanged, and reprojectionError is empty. The first guess is made
-from whole pixels, at least 4; with useExtrinsicGuess half pixels are enough, 6 coordinates in all.
+@return false if there is no pose: there are no points, fewer than 4 different ones (3 with useExtrinsicGuess) were seen, they
+lie on a line, or no pose gives all of them an image. Then rvec and tvec are unchanged, and reprojectionError is empty. The
+first guess is made from whole pixels, at least 4; with useExtrinsicGuess half pixels are enough, 6 coordinates in all.
 */
 CV_EXPORTS_W bool refractiveSolvePnP(InputArray objectPoints, InputArray imagePoints,
         InputArray cameraMatrix, InputArray distCoeffs, const GlassWindow& window,
@@ -1938,7 +1947,7 @@ gives little information, it is not symmetric, and its high end may be infinite.
 @param cameraCovariances uncertainty of both cameras: an LxL covariance of the L lens parameters, or a PxP one of the P
 parameters in the order of RefractiveCamera::parameterNames(), or an empty one: exact. It increases covariance and
 scaleInterval; R and T do not change. noArray(): both are exact.
-@return as above.
+@return as above; 0: covariance and scaleInterval are NaN.
 */
 CV_EXPORTS_AS(refractiveRecoverPoseExtended) int refractiveRecoverPose(InputArray points1, InputArray points2,
         const Ptr<RefractiveCamera>& camera1, const Ptr<RefractiveCamera>& camera2,

@@ -284,9 +284,7 @@ static Matx33d nearestRotation(Matx33d R)
 Matx33d readRotation(InputArray a, const char* name)
 {
     double r[9];
-    const int count = readSmall(a, 9, r, name);
-    if (count == 0)
-        return Matx33d::eye();
+    const int count = a.empty() ? 0 : readSmall(a, 9, r, name);
     if (count == 3)
         return rotationMatrix(Vec3d(r));
     if (count != 9)
@@ -299,6 +297,11 @@ Matx33d readRotation(InputArray a, const char* name)
         CV_Error_(Error::StsBadArg, ("%s is not a rotation: its determinant is %g", name, determinant(R)));
     // Printed matrices are rotations to a few digits only; inverses by the transpose need one to all digits.
     return nearestRotation(R);
+}
+
+Matx33d readRotationOrNone(InputArray a, const char* name)
+{
+    return a.empty() ? Matx33d::eye() : readRotation(a, name);
 }
 
 Vec3d readRotationVector(InputArray a, const char* name)

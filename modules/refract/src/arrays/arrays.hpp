@@ -96,7 +96,8 @@ void forEachBlock(int size, const Body& body) { forEachBlock(size, POINT_COST, b
 
 // Small arguments. Each throws with the argument's name and value.
 Matx33d readCameraMatrix(InputArray m, const char* name);
-Matx33d readRotation(InputArray r, const char* name);                   //!< 3x3 or rotation vector; empty = identity
+Matx33d readRotation(InputArray r, const char* name);                   //!< 3x3 or rotation vector
+Matx33d readRotationOrNone(InputArray r, const char* name);             //!< the same; empty: the identity
 //! The same as a rotation vector: one that is given is returned as it is, though it may turn the long way round.
 Vec3d readRotationVector(InputArray r, const char* name);
 Vec3d readVec3(InputArray v, const char* name);

@@ -45,12 +45,21 @@ std::vector<RigidTransform> readExtrinsics(InputArrayOfArrays Rs, InputArrayOfAr
     return extrinsics;
 }
 
+void writeRotation(const Matx33d& R, OutputArray out)
+{
+    if (out.fixedSize() && out.total()*out.channels() == 3)     // as it was given
+        Mat(rotationVector(R)).convertTo(out, out.depth());
+    else
+        Mat(R).convertTo(out, out.fixedType() ? out.depth() : CV_64F);
+}
+
 void writeExtrinsics(const std::vector<RigidTransform>& extrinsics, OutputArrayOfArrays Rs, OutputArrayOfArrays Ts)
 {
     const int count = (int)extrinsics.size();
     const bool isFixed = Rs.needed() && !Rs.isMatVector();     // std::vector<Matx33d>, which OutputArray cannot resize
-    if (isFixed && (Rs.type() != CV_64FC(9) || (int)Rs.total() != count))
-        CV_Error_(Error::StsBadArg, ("Rs must be a std::vector<Mat>, or a std::vector<Matx33d> of %d", count));
+    const bool areVectors = isFixed && Rs.type() == CV_64FC3;
+    if (isFixed && ((Rs.type() != CV_64FC(9) && !areVectors) || (int)Rs.total() != count))
+        CV_Error_(Error::StsBadArg, ("Rs must be a std::vector<Mat>, or a std::vector<Matx33d> or <Vec3d> of %d", count));
     if (Rs.needed() && !isFixed)
         Rs.create(count, 1, CV_64F);
     Mat fixed = isFixed ? Rs.getMat() : Mat();
@@ -60,11 +69,12 @@ void writeExtrinsics(const std::vector<RigidTransform>& extrinsics, OutputArrayO
         T.push_back(extrinsics[c].t);
         if (!Rs.needed())
             continue;
-        if (isFixed)
-        {
+        if (areVectors)
+            fixed.ptr<Vec3d>()[c] = rotationVector(extrinsics[c].R);
+        else if (isFixed)
             fixed.ptr<Matx33d>()[c] = extrinsics[c].R;
+        if (isFixed)
             continue;
-        }
         Rs.create(3, 3, CV_64F, c, true);
         Mat(extrinsics[c].R).copyTo(Rs.getMat(c));
     }

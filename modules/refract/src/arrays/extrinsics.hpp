@@ -17,6 +17,9 @@ String numbered(const char* name, int i);
 identity within rounding; it is exact in the result. */
 std::vector<RigidTransform> readExtrinsics(InputArrayOfArrays Rs, InputArrayOfArrays Ts, int cameras);
 
+//! 3x3; a rotation vector, if only that has room.
+void writeRotation(const Matx33d& R, OutputArray out);
+
 //! 3x3 and 3x1 CV_64F; whatever is not wanted is left out.
 void writeExtrinsics(const std::vector<RigidTransform>& extrinsics, OutputArrayOfArrays Rs, OutputArrayOfArrays Ts);
 

@@ -228,9 +228,9 @@ BundleFit adjust(const BundleImages& images, const std::vector<Point3d>& points,
 
     BundleFit fit;
     throwUnlessConverged(fitBundle(rig, task, fit), FitKind::BUNDLE);
-    setCameras(rig, cameras);
     if (areExtrinsicsFree(flags, rig, task.cameraPriors) || (count > 1 && task.rigCovariance.size() > 0))
         writeExtrinsicPoses(rig, Rs, Ts);
+    setCameras(rig, cameras);
     writePoints(fit.points, depth, points3D);
     return fit;
 }

@@ -59,9 +59,9 @@ static RigFit calibrate(InputArrayOfArrays objectPoints, const std::vector<std::
     rig.extrinsics = placesFollow ? std::vector<Pose>(count) : readExtrinsicPoses(Rs, Ts, count);
 
     const RigFit fit = fitCheckingPairs(rig, task);
-    setCameras(rig, cameras);
     if (areExtrinsicsFree(flags, rig, task.cameraPriors))
         writeExtrinsicPoses(rig, Rs, Ts);
+    setCameras(rig, cameras);           // last: what throws leaves them as they were
     return fit;
 }
 
@@ -168,12 +168,12 @@ double stereoCalibrateGlass(InputArrayOfArrays objectPoints,
     task.wantsCovariance = stdDeviations.needed() || covariance.needed();
 
     const RigFit fit = fitCheckingPairs(rig, task);
-    setCameras(rig, { camera1, camera2 });
     if (flags & GLASS_FREE_EXTRINSICS)
     {
-        Mat(rotationMatrix(rig.extrinsics[1].rvec)).copyTo(R);
+        writeRotation(rotationMatrix(rig.extrinsics[1].rvec), R);
         Mat(rig.extrinsics[1].tvec).copyTo(T);
     }
+    setCameras(rig, { camera1, camera2 });
     writeFit(fit, rvecs, tvecs, stdDeviations, covariance, perViewErrors);
     return fit.rms;
 }

@@ -42,9 +42,10 @@ void checkWindow(const GlassWindow& window, int flags)
                                      "normal is undetermined", window.innerIndex));
     if (window.thickness.empty() && (flags & (GLASS_FREE_THICKNESS | GLASS_FREE_INDEX | GLASS_FREE_WEDGE)))
         CV_Error_(Error::StsBadFlag, ("flags is %d, but window has no layer whose thickness, index or wedge could be free", flags));
-    if (equalMedia && (flags & GLASS_FREE_DISTANCE))
-        CV_Error_(Error::StsBadFlag, ("flags has GLASS_FREE_DISTANCE, but innerIndex and outerIndex are both %g: the "
-                                      "distance has no effect then and is undetermined", window.innerIndex));
+    const bool isParallel = window.wedge.empty() && window.curvature == 0 && !(flags & (GLASS_FREE_WEDGE | GLASS_FREE_CURVATURE));
+    if (equalMedia && isParallel && (flags & GLASS_FREE_DISTANCE))
+        CV_Error_(Error::StsBadFlag, ("flags has GLASS_FREE_DISTANCE, but innerIndex and outerIndex are both %g and the faces "
+                                      "parallel planes: the distance has no effect then and is undetermined", window.innerIndex));
 }
 
 } // namespace

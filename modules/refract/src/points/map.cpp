@@ -37,7 +37,7 @@ static PinholeView centralView(const Camera& cam, const Vec4d& plane, InputArray
 {
     const Matx33d K = newCameraMatrix.empty() ? Matx33d(cam.cameraMatrix().ptr<double>())
                                               : readProjection(newCameraMatrix, "newCameraMatrix");
-    return { cam, readRotation(R, "R").t()*inverseCameraMatrix(K, "newCameraMatrix"), Vec3d(), plane };
+    return { cam, readRotationOrNone(R, "R").t()*inverseCameraMatrix(K, "newCameraMatrix"), Vec3d(), plane };
 }
 
 void initRefractiveUndistortRectifyMap(const Ptr<RefractiveCamera>& camera, double depth, InputArray R,

@@ -35,7 +35,7 @@ static DepthReader depthsOf(InputArray depth, const PointReader& points, const C
 static void undistort(const PointReader& in, OutputArray dst, const Camera& cam, const DepthReader& depths, InputArray R_,
                       InputArray P_, OutputArray status)
 {
-    const Matx33d R = readRotation(R_, "R"), H = readProjection(P_, "P")*R;
+    const Matx33d R = readRotationOrNone(R_, "R"), H = readProjection(P_, "P")*R;
     const Vec3d axis(R(2, 0), R(2, 1), R(2, 2)), ahead(0, 0, 1);
     PointWriter out(dst, in.size(), 2, in.depth());
     StatusWriter outStatus(status, in.size());
@@ -93,7 +93,7 @@ static void distort(const PointReader& in, OutputArray dst, const Camera& cam, c
                     InputArray P, OutputArray status)
 {
     const Matx33d K = readProjection(P, "P");
-    const PinholeView view = { cam, readRotation(R, "R").t()*inverseCameraMatrix(K, "P"), Vec3d(), Vec4d(0, 0, 1, 0) };
+    const PinholeView view = { cam, readRotationOrNone(R, "R").t()*inverseCameraMatrix(K, "P"), Vec3d(), Vec4d(0, 0, 1, 0) };
     PointWriter out(dst, in.size(), 2, in.depth());
     StatusWriter outStatus(status, in.size());
     forEachBlock(in.size(), [&](int begin, int n)

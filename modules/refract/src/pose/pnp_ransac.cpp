@@ -14,8 +14,6 @@ all before is refined on its inliers (LO-RANSAC: @cite ChumMatasKittler2003). */
 #include "math/robust_scale.hpp"
 #include "math/rotation.hpp"
 #include "points/point_kernels.hpp"
-#include <array>
-#include <set>
 
 namespace cv { namespace refract {
 
@@ -165,15 +163,6 @@ Sampling samplingOf(const ImagePoints& points, double limit)
 {
     const double POSES = 2;             // of a sample, on average
     return { 3, POSES, CV_PI*limit*limit/std::max(extentOf(points.pixel).area(), DBL_MIN) };
-}
-
-//! How many of the points are not copies of others, which tell nothing.
-int countDifferent(const ImagePoints& points)
-{
-    std::set<std::array<double, 5> > different;
-    for (size_t i = 0; i < points.pixel.size(); i++)
-        different.insert({ { points.object[i].x, points.object[i].y, points.object[i].z, points.pixel[i].x, points.pixel[i].y } });
-    return (int)different.size();
 }
 
 } // namespace

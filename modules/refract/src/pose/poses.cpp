@@ -17,6 +17,8 @@ have several minima as well, of which the closed form knows one: all poses of th
 #include "arrays/views.hpp"
 #include "math/least_squares.hpp"
 #include "math/rotation.hpp"
+#include <array>
+#include <set>
 
 namespace cv { namespace refract {
 
@@ -34,6 +36,15 @@ int scatterRank(const std::vector<Point3d>& points)
     for (int i = 0; i < 3; i++)
         rank += values[i] > 1e-12*values[0];    // squares: flat to one in a million
     return rank;
+}
+
+int countDifferent(const ImagePoints& points)
+{
+    std::set<std::array<double, 5> > different;
+    for (size_t i = 0; i < points.pixel.size(); i++)
+        if (isWhole(points.pixel[i]))
+            different.insert({ { points.object[i].x, points.object[i].y, points.object[i].z, points.pixel[i].x, points.pixel[i].y } });
+    return (int)different.size();
 }
 
 double meanRange(const std::vector<Pose>& poses)

@@ -55,6 +55,9 @@ std::vector<PoseMinimum> findMinima(const Camera& camera, const ImagePoints& poi
 //! Maximum likelihood from a start; the RMS, NaN if it failed, as where the start gives some point no image.
 double refinePose(const Camera& camera, const ImagePoints& points, Pose& pose, int iterations = 100);
 
+//! How many points were seen whole and are no copies of others, which tell nothing.
+int countDifferent(const ImagePoints& points);
+
 //! Rank of the points' scatter: 0 one place, 1 a line, 2 a plane, 3 space.
 int scatterRank(const std::vector<Point3d>& points);
 

@@ -121,6 +121,12 @@ void writePoses(const std::vector<PoseMinimum>& minima, const NearOrigin& origin
     writeVectors(t, tvecs);
 }
 
+//! Three points have up to eight exact poses, of which a guess chooses and nothing else.
+static std::vector<PoseMinimum> minimaOf(const Camera& camera, const ImagePoints& points, const Pose& guess)
+{
+    return guess.found || countDifferent(points) >= 4 ? findMinima(camera, points, guess) : std::vector<PoseMinimum>();
+}
+
 bool refractiveSolvePnP(InputArray objectPoints, InputArray imagePoints, InputArray cameraMatrix,
                         InputArray distCoeffs, const GlassWindow& window, OutputArray rvec,
                         OutputArray tvec, bool useExtrinsicGuess, OutputArray reprojectionError)
@@ -141,7 +147,7 @@ bool refractiveSolvePnP(InputArray objectPoints, InputArray imagePoints, const P
     ImagePoints points = readPoints(objectPoints, imagePoints, useExtrinsicGuess);
     const NearOrigin origin = moveNear(points);
     const Pose guess = useExtrinsicGuess ? origin.toNear(readPose(rvec, tvec)) : Pose();
-    return writeBest(seenBy, points, origin, findMinima(seenBy, points, guess), rvec, tvec, reprojectionError);
+    return writeBest(seenBy, points, origin, minimaOf(seenBy, points, guess), rvec, tvec, reprojectionError);
 }
 
 bool refractiveSolvePnP(InputArray objectPoints, InputArray imagePoints, const Ptr<RefractiveCamera>& camera, OutputArray rvec,
@@ -156,7 +162,7 @@ bool refractiveSolvePnP(InputArray objectPoints, InputArray imagePoints, const P
     ImagePoints points = readWeightedPosePoints(objectPoints, imagePoints, pixelCovariances, useExtrinsicGuess ? 3 : 4, variance);
     const NearOrigin origin = moveNear(points);
     const Pose guess = useExtrinsicGuess ? origin.toNear(readPose(rvec, tvec)) : Pose();
-    const std::vector<PoseMinimum> minima = findMinima(seenBy, points, guess);
+    const std::vector<PoseMinimum> minima = minimaOf(seenBy, points, guess);
     if (!writeBest(seenBy, points, origin, minima, rvec, tvec, reprojectionError))
     {
         covariance.release();
@@ -180,7 +186,7 @@ int refractiveSolvePnPGeneric(InputArray objectPoints, InputArray imagePoints, c
     ImagePoints points = readPoints(objectPoints, imagePoints, useExtrinsicGuess);
     const NearOrigin origin = moveNear(points);
     const Pose guess = useExtrinsicGuess ? origin.toNear(readPose(rvec, tvec)) : Pose();
-    const std::vector<PoseMinimum> minima = findMinima(seenBy, points, guess);
+    const std::vector<PoseMinimum> minima = minimaOf(seenBy, points, guess);
     writePoses(minima, origin, rvecs, tvecs);
     writeErrors(seenBy, points, minima, reprojectionError);
     writeCovariances(seenBy, points, origin, minima, noise, covariances);
