@@ -129,26 +129,11 @@ std::vector<BoardImage> findBoards(const Calibration& calibration, const Target&
                                    const LaserImages& laser, double scale, Progress& progress)
 {
     std::vector<BoardImage> boards(set.images.size());
-    std::vector<std::exception_ptr> errors(set.images.size());
-    cv::parallel_for_(cv::Range(0, (int)boards.size()), [&](const cv::Range& range) {
-        for (int i = range.start; i < range.end; i++)
-        {
-            const DetectedImage& image = set.images[i];
-            try
-            {
-                boards[i] = findLinesOnBoard(image.stem, calibration, target, image.points,
-                                             laser.signal(readImage(image.path), image.path), scale);
-            }
-            catch (...)
-            {
-                errors[i] = std::current_exception();
-            }
-            progress.step();
-        }
-    }, (double)boards.size());
-    for (const std::exception_ptr& error : errors)
-        if (error)
-            std::rethrow_exception(error);
+    inParallel((int)boards.size(), [&](int i) {
+        const DetectedImage& image = set.images[i];
+        boards[i] = findLinesOnBoard(image.stem, calibration, target, image.points, laser.signal(readImage(image.path), image.path), scale);
+        progress.step();
+    });
     return boards;
 }
 

@@ -6,6 +6,7 @@
 #include "assess/swapped_images.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "console/failure.hpp"
+#include "console/progress.hpp"
 #include "console/table.hpp"
 #include "math/dense.hpp"
 #include "measure/distributions.hpp"
@@ -219,9 +220,7 @@ private:
         for (TestedChange& tested : tested_)
             if (isWanted(tested))
                 those.push_back(&tested);
-        parallel_for_(Range(0, (int)those.size()), [&](const Range& range) {
-            for (int i = range.start; i < range.end; i++)
-                fitOf(*those[i]); }, (double)those.size());
+        inParallel((int)those.size(), [&](int i) { fitOf(*those[i]); });
     }
 
     void name()

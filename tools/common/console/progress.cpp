@@ -4,9 +4,11 @@
 #include "console/progress.hpp"
 #include "console/colour.hpp"
 
+#include <opencv2/core/utility.hpp>
 #include <unistd.h>
 #include <chrono>
 #include <cstdio>
+#include <exception>
 
 namespace tools {
 
@@ -65,6 +67,25 @@ void Progress::show()
         fprintf(stderr, "\r\033[K");
         fflush(stderr);
     }
+}
+
+void inParallel(int count, const std::function<void(int)>& call)
+{
+    std::vector<std::exception_ptr> errors(count);
+    cv::parallel_for_(cv::Range(0, count), [&](const cv::Range& range) {
+        for (int i = range.start; i < range.end; i++)
+            try
+            {
+                call(i);
+            }
+            catch (...)
+            {
+                errors[i] = std::current_exception();
+            }
+    }, (double)count);
+    for (const std::exception_ptr& error : errors)
+        if (error)
+            std::rethrow_exception(error);
 }
 
 } // namespace tools

@@ -5,6 +5,7 @@
 #define REFRACT_TOOLS_PROGRESS_HPP
 
 #include <condition_variable>
+#include <functional>
 #include <mutex>
 #include <string>
 #include <thread>
@@ -34,6 +35,9 @@ private:
     std::condition_variable end_;
     std::thread thread_;
 };
+
+//! Calls for 0 to count - 1, on all processors; the first error in that order is thrown.
+void inParallel(int count, const std::function<void(int)>& call);
 
 } // namespace tools
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "diagnose/hypothesis_tests.hpp"
+#include "console/progress.hpp"
 #include "diagnose/causes.hpp"
 #include "measure/distributions.hpp"
 #include <algorithm>
@@ -90,11 +91,10 @@ Trial tried(const RigData& data, const RigOptions& options, const Fit& fit, cons
     std::vector<Relaxed> found(causes.size());
     const auto isTried = [&](size_t i) {
         return causes[i].posesToo || upperTailChiSquared((int)causes[i].freed.size(), gains[i]) < PROMISING; };
-    parallel_for_(Range(0, (int)causes.size()), [&](const Range& range) {
-        for (int i = range.start; i < range.end; i++)
-            if (isTried(i))
-                found[i] = causes[i].posesToo ? RelaxedFit(data, fit, false, noise).asGiven()
-                                              : relaxed.fit(startOf(causes[i]), causes[i].freed); }, (double)causes.size());
+    inParallel((int)causes.size(), [&](int i) {
+        if (isTried(i))
+            found[i] = causes[i].posesToo ? RelaxedFit(data, fit, false, noise).asGiven()
+                                          : relaxed.fit(startOf(causes[i]), causes[i].freed); });
     for (size_t i = 0; i < causes.size(); i++)
     {
         if (!isTried(i) || !canBe(found[i], trial.given))

@@ -195,19 +195,13 @@ ScaledMatches SceneMatcher::matchesOf(const std::string& moment, const std::vect
 {
     // Side by side, as a detector by itself is busy on one processor for most of its time.
     std::vector<Features> features(images.size());
-    parallel_for_(Range(0, (int)images.size()), [&](const Range& range) {
-        for (int c = range.start; c < range.end; c++)
-            if (!images[c].empty())
-                features[c] = featuresOf(images[c], options_.mostFeatures, options_.features);
-    });
+    inParallel((int)images.size(), [&](int c) {
+        if (!images[c].empty())
+            features[c] = featuresOf(images[c], options_.mostFeatures, options_.features); });
     std::vector<PairMatches> matches(pairs_.size());
-    parallel_for_(Range(0, (int)pairs_.size()), [&](const Range& range) {
-        for (int i = range.start; i < range.end; i++)
-        {
-            const CameraPair& pair = pairs_[i];
-            matches[i] = {pair.first, pair.second, partnersNearCurves(input_.rig, pair, features[pair.first], features[pair.second])};
-        }
-    });
+    inParallel((int)pairs_.size(), [&](int i) {
+        const CameraPair& pair = pairs_[i];
+        matches[i] = {pair.first, pair.second, partnersNearCurves(input_.rig, pair, features[pair.first], features[pair.second])}; });
     return matchesOfChains(moment, features, chainsOf(features, matches));
 }
 

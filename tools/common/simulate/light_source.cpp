@@ -4,6 +4,7 @@
 #include "simulate/light_source.hpp"
 #include "calibrate/rig_model.hpp"
 #include "console/failure.hpp"
+#include "console/progress.hpp"
 
 #include <opencv2/imgproc.hpp>
 #include <algorithm>
@@ -157,10 +158,8 @@ void addLight(const Illumination& light, const Mat& points, const Mat& reflectan
         const LightSource& source = light.sources[i];
         const Viewpoint view = source.view(light.window);
         Mat sent(points.size(), CV_32F);
-        cv::parallel_for_(cv::Range(0, points.rows), [&](const cv::Range& range) {
-            for (int y = range.start; y < range.end; y++)
-                lightRow(source, light.picture, view, points.ptr<Vec3d>(y), points.cols, scene, sent.ptr<float>(y));
-        });
+        inParallel(points.rows, [&](int y) {
+            lightRow(source, light.picture, view, points.ptr<Vec3d>(y), points.cols, scene, sent.ptr<float>(y)); });
         if (source.speckle > 0)
             sent = sent.mul(speckleOf(source, points.size(), light.seed + i));
         const Vec3d bgr(source.color[2], source.color[1], source.color[0]);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "simulate/render.hpp"
+#include "console/progress.hpp"
 #include <opencv2/imgproc.hpp>
 #include <cmath>
 
@@ -129,15 +130,14 @@ Mat paintFine(const Paint& paint, const Mat& coordinates)
 {
     Mat fine, levels(coordinates.size()*FINE, CV_32F);
     cv::resize(coordinates, fine, levels.size(), 0, 0, cv::INTER_LINEAR);    // aligned by pixel areas, as needed here
-    cv::parallel_for_(cv::Range(0, fine.rows), [&](const cv::Range& range) {
-        for (int y = range.start; y < range.end; y++)
-            for (int x = 0; x < fine.cols; x++)
-            {
-                const int x0 = std::min(x, fine.cols - 2), y0 = std::min(y, fine.rows - 2);
-                const Vec2d du = fine.at<Vec2d>(y0, x0 + 1) - fine.at<Vec2d>(y0, x0);
-                const Vec2d dv = fine.at<Vec2d>(y0 + 1, x0) - fine.at<Vec2d>(y0, x0);
-                levels.at<float>(y, x) = (float)meanLevel(paint, fine.at<Vec2d>(y, x), du, dv);
-            }
+    inParallel(fine.rows, [&](int y) {
+        for (int x = 0; x < fine.cols; x++)
+        {
+            const int x0 = std::min(x, fine.cols - 2), y0 = std::min(y, fine.rows - 2);
+            const Vec2d du = fine.at<Vec2d>(y0, x0 + 1) - fine.at<Vec2d>(y0, x0);
+            const Vec2d dv = fine.at<Vec2d>(y0 + 1, x0) - fine.at<Vec2d>(y0, x0);
+            levels.at<float>(y, x) = (float)meanLevel(paint, fine.at<Vec2d>(y, x), du, dv);
+        }
     });
     return levels;
 }

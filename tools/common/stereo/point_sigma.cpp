@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "stereo/point_sigma.hpp"
+#include "console/progress.hpp"
 
 #include <cmath>
 
@@ -110,20 +111,19 @@ Mat pointSigma(const RectifiedRig& rig, const DenseStereo& stereo, double contra
     const CalibrationVariance calibration(rig);
     const Vec3d centre = Matx33d(rig.R1.ptr<double>()).t()*rig.centre();
     Mat result(stereo.points.size(), CV_32FC3, cv::Scalar::all(NAN));
-    cv::parallel_for_(cv::Range(0, result.rows), [&](const cv::Range& range) {
-        for (int y = range.start; y < range.end; y++)
-            for (int x = 0; x < result.cols; x++)
-            {
-                const Vec3f& X = stereo.points.at<Vec3f>(y, x);
-                if (!(X[2] == X[2]))
-                    continue;
-                const double d = stereo.disparity.at<float>(y, x);
-                // a pinhole's point is its centre + something/(d - shift)
-                const double byMatch = stereo.disparitySigmas.at<float>(y, x)/(d - rig.shift());
-                const Vec3d along = (Vec3d(X) - centre)*std::sqrt(byMatch*byMatch + contradiction*contradiction);
-                const Vec3d variance = along.mul(along) + calibration.at(x, y, d);
-                result.at<Vec3f>(y, x) = Vec3f((float)std::sqrt(variance[0]), (float)std::sqrt(variance[1]), (float)std::sqrt(variance[2]));
-            }
+    inParallel(result.rows, [&](int y) {
+        for (int x = 0; x < result.cols; x++)
+        {
+            const Vec3f& X = stereo.points.at<Vec3f>(y, x);
+            if (!(X[2] == X[2]))
+                continue;
+            const double d = stereo.disparity.at<float>(y, x);
+            // a pinhole's point is its centre + something/(d - shift)
+            const double byMatch = stereo.disparitySigmas.at<float>(y, x)/(d - rig.shift());
+            const Vec3d along = (Vec3d(X) - centre)*std::sqrt(byMatch*byMatch + contradiction*contradiction);
+            const Vec3d variance = along.mul(along) + calibration.at(x, y, d);
+            result.at<Vec3f>(y, x) = Vec3f((float)std::sqrt(variance[0]), (float)std::sqrt(variance[1]), (float)std::sqrt(variance[2]));
+        }
     });
     return result;
 }

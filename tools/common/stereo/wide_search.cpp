@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "stereo/wide_search.hpp"
+#include "console/progress.hpp"
 #include "match/depth_range.hpp"
 #include "console/failure.hpp"
 #include "stereo/match_support.hpp"
@@ -188,14 +189,13 @@ void WideSearch::removeContradicted(const WideDepths& seen, bool onlyConfirmed, 
         return;
     const Matx33d K(rig_->P1.colRange(0, 3).clone().ptr<double>()), K_turn = K*Matx33d(rig_->R1.ptr<double>());
     const Vec3d offset = K*rig_->centre();
-    cv::parallel_for_(cv::Range(0, points.rows), [&](const cv::Range& range) {
-        for (int y = range.start; y < range.end; y++)
-            for (int x = 0; x < points.cols; x++)
-            {
-                cv::Vec3f& X = points.at<cv::Vec3f>(y, x);
-                if (X[2] == X[2] && isContradicted(seen, onlyConfirmed, X, K_turn, offset))
-                    X = cv::Vec3f(NONE, NONE, NONE);
-            }
+    inParallel(points.rows, [&](int y) {
+        for (int x = 0; x < points.cols; x++)
+        {
+            cv::Vec3f& X = points.at<cv::Vec3f>(y, x);
+            if (X[2] == X[2] && isContradicted(seen, onlyConfirmed, X, K_turn, offset))
+                X = cv::Vec3f(NONE, NONE, NONE);
+        }
     });
 }
 

@@ -30,21 +30,18 @@ std::vector<Checked> readAll(const std::vector<std::vector<std::string>>& files,
         for (const std::string& path : files[s])
             all.push_back({path, s, {}, nullptr});
     Progress progress("reading images", (int)all.size(), quiet);
-    cv::parallel_for_(cv::Range(0, (int)all.size()), [&](const cv::Range& range) {
-        for (int i = range.start; i < range.end; i++)
+    inParallel((int)all.size(), [&](int i) {
+        progress.at(all[i].path);
+        try
         {
-            progress.at(all[i].path);
-            try
-            {
-                all[i].facts = factsOf(all[i].path);
-            }
-            catch (...)
-            {
-                all[i].error = std::current_exception();
-            }
-            progress.step();
+            all[i].facts = factsOf(all[i].path);
         }
-    }, (double)all.size());
+        catch (...)
+        {
+            all[i].error = std::current_exception();
+        }
+        progress.step();
+    });
     return all;
 }
 

@@ -4,6 +4,7 @@
 #include "target/missing_target.hpp"
 #include "console/failure.hpp"
 #include "console/numbers.hpp"
+#include "console/progress.hpp"
 #include "target/april_grid.hpp"
 #include "target/dot_lattice.hpp"
 #include "target/partial_chessboard.hpp"
@@ -55,10 +56,8 @@ bool isFound(const Target& target, const std::vector<Without>& images, Channel c
 {
     const size_t count = std::min(images.size(), TRIED);
     std::vector<char> found(count);
-    cv::parallel_for_(cv::Range(0, (int)count), [&](const cv::Range& range) {
-        for (int i = range.start; i < range.end; i++)
-            found[i] = !target.detect(readGrey(images[i].path, channel), nullptr, Target::HURRIED).empty();
-    }, (double)count);
+    inParallel((int)count, [&](int i) {
+        found[i] = !target.detect(readGrey(images[i].path, channel), nullptr, Target::HURRIED).empty(); });
     return std::count(found.begin(), found.end(), true) > 0;
 }
 

@@ -35,26 +35,6 @@ std::vector<int> spread(int count)
     return order;
 }
 
-//! Calls for each; the first error in the order of the list is thrown.
-void forEach(const std::vector<int>& which, const std::function<void(int)>& call)
-{
-    std::vector<std::exception_ptr> errors(which.size());
-    cv::parallel_for_(cv::Range(0, (int)which.size()), [&](const cv::Range& range) {
-        for (int k = range.start; k < range.end; k++)
-            try
-            {
-                call(which[k]);
-            }
-            catch (...)
-            {
-                errors[k] = std::current_exception();
-            }
-    }, (double)which.size());
-    for (const std::exception_ptr& error : errors)
-        if (error)
-            std::rethrow_exception(error);
-}
-
 std::vector<int> part(const std::vector<int>& all, size_t from, size_t to)
 {
     return std::vector<int>(all.begin() + (long)std::min(from, all.size()), all.begin() + (long)std::min(to, all.size()));
@@ -69,7 +49,8 @@ void TargetSearch::search(const std::vector<int>& which, Target::Effort effort, 
 {
     // What else may be in an image is asked for only where nothing is found in any.
     const bool isSizeKnown = std::any_of(results_.begin(), results_.end(), [](const Result& result) { return !result.points.empty(); });
-    forEach(which, [&](int i) {
+    inParallel((int)which.size(), [&](int k) {
+        const int i = which[k];
         progress.at(paths_[i]);
         Result& result = results_[i];
         result.points = detectIn(readGrey(paths_[i], channel_), paths_[i], target_, isSizeKnown ? nullptr : &result.other, effort);
@@ -82,7 +63,8 @@ void TargetSearch::search(const std::vector<int>& which, Target::Effort effort, 
 bool TargetSearch::glimpse(const std::vector<int>& which, Progress& progress)
 {
     std::atomic<bool> any(false);
-    forEach(which, [&](int i) {
+    inParallel((int)which.size(), [&](int k) {
+        const int i = which[k];
         progress.at(paths_[i]);
         if (!any && target_.glimpse(readGrey(paths_[i], channel_)))
             any = true;
@@ -94,7 +76,8 @@ void TargetSearch::lookForOthers(const std::vector<int>& which)
 {
     if (target_.pattern() != Target::CHESSBOARD)
         return;
-    forEach(which, [&](int i) {
+    inParallel((int)which.size(), [&](int k) {
+        const int i = which[k];
         const cv::Size seen = lookForChessboard(readGrey(paths_[i], channel_)).size, whole = target_.size();
         if (seen != whole && seen != cv::Size(whole.height, whole.width))
             results_[i].other = longerFirst(seen);
