@@ -31,6 +31,7 @@ Exit code: 0 done; 1 could not do it: no line, too few boards, lines that do not
 met, or the boards contradict the sheet.)";
 
 #include "laser/laser_output.hpp"
+#include "console/numbers.hpp"
 #include "laser/sheet_fit.hpp"
 #include "calibrate/conditions.hpp"
 #include "calibrate/units.hpp"
@@ -148,8 +149,7 @@ double scaleOf(const std::vector<BoardImage>& boards, const SheetFit& fit, const
             pixels.push_back(boards[line.image].points[i].ridge.pixel);
         scales.push_back(scaleOfLine(laser.signal(readImage(path), path), pixels));
     }
-    std::nth_element(scales.begin(), scales.begin() + scales.size()/2, scales.end());
-    return scales[scales.size()/2];
+    return median(scales);
 }
 
 void drawLine(const Options& o, const cv::Mat& image, const std::string& stem, const std::vector<RidgePoint>& line)

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "laser/ridges.hpp"
+#include "console/numbers.hpp"
 #include <opencv2/imgproc.hpp>
 #include <algorithm>
 #include <cmath>
@@ -217,8 +218,7 @@ double scaleOfLine(const Mat& signal, const std::vector<Point2d>& pixels)
             }
         }
     }
-    std::nth_element(scaleAt.begin(), scaleAt.begin() + scaleAt.size()/2, scaleAt.end());
-    return scaleAt[scaleAt.size()/2];
+    return median(scaleAt);
 }
 
 double excessNoise(const std::vector<double>& residuals, const std::vector<double>& variances)
@@ -228,8 +228,7 @@ double excessNoise(const std::vector<double>& residuals, const std::vector<doubl
         std::vector<double> ratios;
         for (size_t i = 0; i < residuals.size(); i++)
             ratios.push_back(std::abs(residuals[i])/std::sqrt(variances[i] + excess*excess));
-        std::nth_element(ratios.begin(), ratios.begin() + ratios.size()/2, ratios.end());
-        return ratios[ratios.size()/2] <= MEDIAN;
+        return median(ratios) <= MEDIAN;
     };
     if (residuals.empty() || isEnough(0.))
         return 0.;

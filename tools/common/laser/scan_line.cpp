@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "laser/scan_line.hpp"
+#include "console/numbers.hpp"
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -170,8 +171,7 @@ std::vector<Piece> piecesOf(const std::vector<RidgePoint>& ridges, bool byColumn
         std::vector<double> strengths;
         for (int i : piece.points)
             strengths.push_back(ridges[i].curvature);
-        std::nth_element(strengths.begin(), strengths.begin() + strengths.size()/2, strengths.end());
-        piece.strength = strengths[strengths.size()/2];
+        piece.strength = median(strengths);
     }
     return pieces;
 }

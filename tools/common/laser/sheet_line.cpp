@@ -36,8 +36,7 @@ double medianOff(const BoardImage& image, const std::vector<int>& points, const 
     std::vector<double> off;
     for (int i : points)
         off.push_back(std::abs(pixelsOffPlane(image.points[i], plane)));
-    std::nth_element(off.begin(), off.begin() + off.size()/2, off.end());
-    return off[off.size()/2];
+    return median(off);
 }
 
 std::vector<Line> linesOf(const std::vector<BoardImage>& images)
