@@ -144,32 +144,21 @@ void sayUncovered(const Options& options, const Calibration& calibration, const 
 
 std::string csvOf(const std::vector<MeasuredView>& measured, const std::vector<Measurement>& measurements, size_t cameras)
 {
-    const cv::Point2d none(std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN());
-    std::ostringstream csv;
-    csv.precision(12);
-    csv << "image,id";
     cameras = std::max(cameras, (size_t)2);
-    for (size_t c = 1; c <= cameras; c++)
-        csv << ",u" << c << ",v" << c;
-    csv << ",x,y,z,sx,sy,sz,status\n";
+    PointsCsv csv(cameras);
     for (size_t k = 0; k < measured.size(); k++)
         for (size_t i = 0; i < measured[k].ids.size(); i++)
         {
             const Measurement& m = measurements[k];
-            std::vector<double> numbers;
-            for (size_t c = 0; c < cameras; c++)
+            std::vector<double> seen(2*cameras, std::numeric_limits<double>::quiet_NaN());
+            for (size_t c = 0; c < std::min(cameras, m.pixels.size()); c++)
             {
-                const cv::Point2d pixel = c < m.pixels.size() ? m.pixels[c][i] : none;
-                numbers.insert(numbers.end(), {pixel.x, pixel.y});
+                seen[2*c] = m.pixels[c][i].x;
+                seen[2*c + 1] = m.pixels[c][i].y;
             }
-            numbers.insert(numbers.end(), {m.points[i].x, m.points[i].y, m.points[i].z, m.sigma[i][0], m.sigma[i][1],
-                                           m.sigma[i][2]});
-            csv << cellOf(measured[k].stem) << ',' << cellOf(measured[k].ids[i]);
-            for (const double number : numbers)
-                std::isnan(number) ? csv << ",nan" : csv << ',' << number;
-            csv << ',' << (int)m.status[i] << '\n';
+            csv.add(measured[k].stem, measured[k].ids[i], seen, m.points[i], m.sigma[i], m.status[i]);
         }
-    return csv.str();
+    return csv.text();
 }
 
 std::vector<std::string> rowOf(const std::string& name, const std::vector<MeasuredView>& measured,

@@ -112,31 +112,18 @@ Json parametersOf(const std::vector<EstimatedParameter>& list)
 
 std::string pointsCsv(const Matches& matches, const BundleAdjustment& adjustment, const std::string& image)
 {
-    std::ostringstream csv;
-    csv.precision(12);
-    csv << "image,id";
-    for (int c = 1; c <= matches.cameraCount(); c++)
-        csv << ",u" << c << ",v" << c;
-    for (size_t c = 1; c <= matches.stds.size(); c++)
-        csv << ",std" << c;
-    csv << ",x,y,z,sx,sy,sz,status\n";
+    PointsCsv csv(matches.pixels.size(), matches.stds.size());
     for (size_t i = 0; i < matches.names.size(); i++)
     {
         const PointName& name = matches.names[i];
-        csv << cellOf(name.image.empty() ? image : name.image) << ',' << cellOf(name.id);
-        std::vector<double> numbers;
+        std::vector<double> seen;
         for (const std::vector<Point2d>& ofCamera : matches.pixels)
-            numbers.insert(numbers.end(), {ofCamera[i].x, ofCamera[i].y});
+            seen.insert(seen.end(), {ofCamera[i].x, ofCamera[i].y});
         for (const std::vector<double>& ofCamera : matches.stds)
-            numbers.push_back(ofCamera[i]);
-        const Point3d X = adjustment.points[i];
-        const Vec3d s = adjustment.sigma[i];
-        numbers.insert(numbers.end(), {X.x, X.y, X.z, s[0], s[1], s[2]});
-        for (const double number : numbers)
-            std::isnan(number) ? csv << ",nan" : csv << ',' << number;
-        csv << ',' << (int)adjustment.status[i] << '\n';
+            seen.push_back(ofCamera[i]);
+        csv.add(name.image.empty() ? image : name.image, name.id, seen, adjustment.points[i], adjustment.sigma[i], adjustment.status[i]);
     }
-    return csv.str();
+    return csv.text();
 }
 
 std::string fittedLine(const std::string& head, const std::vector<std::string>& words)

@@ -34,11 +34,7 @@ Vec3d medianStd(const std::vector<Vec3d>& stds)
     return medians;
 }
 
-void putNumbers(std::ostream& csv, const Vec3d& numbers)
-{
-    for (double number : numbers.val)
-        std::isnan(number) ? csv << ",nan" : csv << ',' << number;
-}
+void putVector(std::ostream& csv, const Vec3d& v) { putNumbers(csv, {v[0], v[1], v[2]}); }
 
 Vec3d stdsOf(const Matx33d& covariance)
 {
@@ -181,8 +177,8 @@ std::string surveyPointsCsv(const SurveyResult& result)
     for (size_t i = 0; i < result.survey.model.points.size(); i++)
     {
         csv << result.survey.model.points[i].id;
-        putNumbers(csv, Vec3d(result.adjustment.bundle.points[i]) + result.start.origin);
-        putNumbers(csv, result.adjustment.bundle.sigma[i]);
+        putVector(csv, Vec3d(result.adjustment.bundle.points[i]) + result.start.origin);
+        putVector(csv, result.adjustment.bundle.sigma[i]);
         csv << ',' << result.adjustment.images[i] << ',';
         std::isnan(result.adjustment.angles[i]) ? csv << "nan" : csv << format("%.4g", result.adjustment.angles[i]);
         csv << ',' << (int)result.adjustment.bundle.status[i] << '\n';
@@ -200,12 +196,12 @@ std::string surveyPosesCsv(const SurveyResult& result)
         const RigidTransform pose = placed(result, (int)view);
         const Matx66d covariance(result.adjustment.viewCovariances[view].ptr<double>());
         csv << cellOf(result.survey.views[view]);
-        putNumbers(csv, result.adjustment.rvecs[view]*DEGREES);
-        putNumbers(csv, pose.T);
-        putNumbers(csv, stdsOf(covariance.get_minor<3, 3>(0, 0))*DEGREES);
-        putNumbers(csv, stdsOf(placedCovariance(result, (int)view)));
-        putNumbers(csv, pose.inverse(Vec3d()));
-        putNumbers(csv, stdsOf(result.adjustment.centreCovariance((int)view)));
+        putVector(csv, result.adjustment.rvecs[view]*DEGREES);
+        putVector(csv, pose.T);
+        putVector(csv, stdsOf(covariance.get_minor<3, 3>(0, 0))*DEGREES);
+        putVector(csv, stdsOf(placedCovariance(result, (int)view)));
+        putVector(csv, pose.inverse(Vec3d()));
+        putVector(csv, stdsOf(result.adjustment.centreCovariance((int)view)));
         csv << '\n';
     }
     return csv.str();

@@ -241,4 +241,30 @@ std::string cellOf(const std::string& text)
     return cell + "\"";
 }
 
+void putNumbers(std::ostream& csv, const std::vector<double>& numbers)
+{
+    for (double number : numbers)
+        std::isnan(number) ? csv << ",nan" : csv << ',' << number;
+}
+
+PointsCsv::PointsCsv(size_t cameras, size_t stds)
+{
+    csv_.precision(12);
+    csv_ << "image,id";
+    for (size_t c = 1; c <= cameras; c++)
+        csv_ << ",u" << c << ",v" << c;
+    for (size_t c = 1; c <= stds; c++)
+        csv_ << ",std" << c;
+    csv_ << ",x,y,z,sx,sy,sz,status\n";
+}
+
+void PointsCsv::add(const std::string& image, const std::string& id, const std::vector<double>& seen, const cv::Point3d& X,
+                    const cv::Vec3d& sigma, int status)
+{
+    csv_ << cellOf(image) << ',' << cellOf(id);
+    putNumbers(csv_, seen);
+    putNumbers(csv_, {X.x, X.y, X.z, sigma[0], sigma[1], sigma[2]});
+    csv_ << ',' << status << '\n';
+}
+
 } // namespace tools

@@ -5,6 +5,7 @@
 #define REFRACT_TOOLS_CSV_HPP
 
 #include <opencv2/core.hpp>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -56,6 +57,24 @@ std::vector<std::string> headingOf(const std::string& path);
 
 //! A cell of a table with commas between; blanks are quoted too, for readers that split at them.
 std::string cellOf(const std::string& text);
+
+//! Numbers of a row, each with a comma before it; NaN as nan.
+void putNumbers(std::ostream& csv, const std::vector<double>& numbers);
+
+//! A table of measured points: image,id,u1,v1,...[,std1,...],x,y,z,sx,sy,sz,status.
+class PointsCsv
+{
+public:
+    //! @param stds how many columns there are of a pixel's standard deviation
+    explicit PointsCsv(size_t cameras, size_t stds = 0);
+    //! @param seen pixels of all cameras, then their deviations
+    void add(const std::string& image, const std::string& id, const std::vector<double>& seen, const cv::Point3d& X,
+             const cv::Vec3d& sigma, int status);
+    std::string text() const { return csv_.str(); }
+
+private:
+    std::ostringstream csv_;
+};
 
 } // namespace tools
 

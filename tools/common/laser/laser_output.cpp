@@ -15,20 +15,14 @@ namespace tools {
 
 std::string csvOf(const std::vector<Scan>& scans)
 {
-    std::ostringstream csv;
-    csv.precision(12);
-    csv << "image,id,u1,v1,x,y,z,sx,sy,sz,status\n";
+    PointsCsv csv(1);
     for (const Scan& scan : scans)
         for (size_t i = 0; i < scan.line.points.size(); i++)
         {
             const Measurement& m = scan.measured;
-            csv << cellOf(scan.name) << ',' << i;
-            for (double number : {m.pixels[0][i].x, m.pixels[0][i].y, m.points[i].x, m.points[i].y, m.points[i].z, m.sigma[i][0],
-                                  m.sigma[i][1], m.sigma[i][2]})
-                std::isnan(number) ? csv << ",nan" : csv << ',' << number;
-            csv << ',' << (int)m.status[i] << '\n';
+            csv.add(scan.name, std::to_string(i), {m.pixels[0][i].x, m.pixels[0][i].y}, m.points[i], m.sigma[i], m.status[i]);
         }
-    return csv.str();
+    return csv.text();
 }
 
 std::string unitAfter(const std::string& unit) { return unit.empty() ? "" : " " + unit; }
