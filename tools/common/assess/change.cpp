@@ -3,6 +3,7 @@
 
 #include "assess/change.hpp"
 #include "calibrate/parameter_columns.hpp"
+#include "calibrate/rig_data.hpp"
 #include "calibrate/units.hpp"
 #include "calibrate/window_face.hpp"
 #include <algorithm>
@@ -232,7 +233,7 @@ private:
     {
         if (isSplined(*rig_.cameras[c]))
             return;
-        const std::string of = count_ > 1 ? format(" of camera %d", c + 1) : "";
+        const std::string of = ofCamera(c, count_);
         const double f = rig_.cameras[c]->lensParameters().at<double>(0);
         const ChangedQuantity pixels{"px", 1., 2, WIDE*f};
         add("focal length" + of + " changed by", c, {percent(WIDE)},

@@ -66,7 +66,7 @@ std::string worstView(const RigCalibration& c)
                 if (!(px > worst))
                     continue;
                 worst = px;
-                name = "'" + c.data.views[i].stem + "'" + (c.data.cameraCount == 1 ? "" : format(" of camera %d", k + 1))
+                name = "'" + c.data.views[i].stem + "'" + ofCamera(k, c.data.cameraCount)
                     + (glass ? "" : ", direct");
             }
     return name + format(" (%.3g px)", worst);

@@ -52,8 +52,6 @@ public:
     std::vector<Undone> all;
 
 private:
-    std::string ofCamera(int c) const { return count_ > 1 && c >= 0 ? format(" of camera %d", c + 1) : ""; }
-
     void addTransforms()
     {
         for (int c = count_ > 1 ? -1 : 0; c < count_; c++)
@@ -97,7 +95,7 @@ private:
                     view.glass[k] = undone(view.glass[k], transform.turn, numbers, size);
             }
         }
-        all.push_back({STATES[state] + ofCamera(c) + " " + transform.what, c, views});
+        all.push_back({STATES[state] + ofCamera(c, count_) + " " + transform.what, c, views});
     }
 
     void addExchangedStates()
@@ -108,7 +106,7 @@ private:
                 continue;
             std::vector<View> views = views_;
             exchangeStates(views, c);
-            all.push_back({"direct images and images through the window" + ofCamera(c) + " exchanged", c, views});
+            all.push_back({"direct images and images through the window" + ofCamera(c, count_) + " exchanged", c, views});
         }
     }
 

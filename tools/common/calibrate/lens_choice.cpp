@@ -43,10 +43,8 @@ std::vector<int> unknownCameras(const RigData& data, const RigOptions& options)
 
 std::vector<TargetView> imagesOf(const RigData& data, int camera, bool glass)
 {
-    std::vector<TargetView> all, some;
-    for (const View& view : data.views)
-        if (!(glass ? view.glass : view.direct)[camera].empty())
-            all.push_back({view.objectPoints, (glass ? view.glass : view.direct)[camera]});
+    const std::vector<TargetView> all = targetViewsOf(data, camera, glass);
+    std::vector<TargetView> some;
     const size_t step = (all.size() + MOST_IMAGES - 1)/MOST_IMAGES;
     for (size_t i = 0; i < all.size(); i += step)
         some.push_back(all[i]);

@@ -257,6 +257,15 @@ Ptr<RefractiveCamera> calibratePinhole(const std::vector<TargetView>& targetView
     return camera;
 }
 
+std::vector<TargetView> targetViewsOf(const RigData& data, int camera, bool glass)
+{
+    std::vector<TargetView> views;
+    for (const View& view : data.views)
+        if (!(glass ? view.glass : view.direct)[camera].empty())
+            views.push_back({view.objectPoints, (glass ? view.glass : view.direct)[camera]});
+    return views;
+}
+
 bool determineLens(const std::vector<TargetView>& views)
 {
     const size_t LEAST_OF_FLAT = 3;

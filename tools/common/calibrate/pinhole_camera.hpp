@@ -44,6 +44,9 @@ hardly determine */
 cv::Ptr<cv::refract::RefractiveCamera> calibratePinhole(const std::vector<TargetView>& views, cv::Size imageSize,
                                                      int coefficients, int fixed, double& rms, int solver = 0);
 
+//! Of the views that a camera has, directly or through the window.
+std::vector<TargetView> targetViewsOf(const RigData& data, int camera, bool glass);
+
 //! Whether there are enough images to find a lens from: three of flat targets, one of a target with depth.
 bool determineLens(const std::vector<TargetView>& views);
 

@@ -27,6 +27,12 @@ template <typename T> using PerCamera = std::array<T, MAX_CAMERAS>;
 //! "" for the first camera, then "2", "3", ...: what follows the names of options and keys.
 inline std::string cameraSuffix(int camera) { return camera ? std::to_string(camera + 1) : ""; }
 
+//! " of camera 2"; nothing where there is one, or where no camera is meant (negative).
+inline std::string ofCamera(int camera, int cameras)
+{
+    return cameras > 1 && camera >= 0 ? " of camera " + std::to_string(camera + 1) : "";
+}
+
 //! The image files of each camera, direct and through the window; empty: none.
 struct RigSources
 {

@@ -20,16 +20,6 @@ namespace tools {
 
 namespace {
 
-//! Of the views that have one.
-std::vector<TargetView> viewsOf(const RigData& data, int camera, bool glass)
-{
-    std::vector<TargetView> views;
-    for (const View& view : data.views)
-        if (!(glass ? view.glass : view.direct)[camera].empty())
-            views.push_back({view.objectPoints, (glass ? view.glass : view.direct)[camera]});
-    return views;
-}
-
 //! A lens with as many coefficients as another has, the rest of its own being 0.
 Ptr<RefractiveCamera> withCoefficientsOf(const Ptr<RefractiveCamera>& lens, const Ptr<RefractiveCamera>& other)
 {
@@ -44,14 +34,14 @@ Ptr<RefractiveCamera> startLens(const RigData& data, const RigOptions& options, 
     if (options.known[camera])
         return options.known[camera];
     const std::string suffix = cameraSuffix(camera);
-    std::vector<TargetView> views = viewsOf(data, camera, false);
+    std::vector<TargetView> views = targetViewsOf(data, camera, false);
     source.kind = LensSource::FROM_DIRECT;
     if (views.empty())
     {
         if (!(options.flags & GLASS_FREE_INTRINSICS))
             throw Failure("there are no images for the lens: give --direct" + suffix + " images or --camera" + suffix
                           + ", or --free=intrinsics to find the lens through the window");
-        views = viewsOf(data, camera, true);    // a pinhole through the glass is a good start
+        views = targetViewsOf(data, camera, true);    // a pinhole through the glass is a good start
         source.kind = LensSource::FROM_GLASS;
     }
     source.views = (int)views.size();
@@ -69,7 +59,7 @@ void checkLens(const RigData& data, const Ptr<RefractiveCamera>& lens, int camer
 {
     int outside = 0;
     for (bool glass : {false, true})
-        for (const TargetView& view : viewsOf(data, camera, glass))
+        for (const TargetView& view : targetViewsOf(data, camera, glass))
         {
             Mat origins, directions;
             std::vector<uchar> status;

@@ -54,16 +54,11 @@ void addMotion(const FittedRig& rig, std::vector<Cause>& causes)
         causes.push_back({"motion", motionAbout(middle, first, turns), [=](const Relaxed& found, double deviations) {
             const RigidTransform& motion = found.glass.targetMotion;
             const Vec3d moved = motion*middle - middle, turned = DEGREES*rotationVector(motion.R);
+            // Where it turns, its columns are those of the camera's centre: the +- about the middle is that of the shifts.
+            const int of = turns ? (int)found.covariance.rows() - 6 : first + 3;
             std::string text;
             for (int k = 0; k < 3; k++)
-                text += (k ? ", " : "") + plusMinus(moved[k], std::sqrt(std::max(0., found.covariance(first + 3 + k, first + 3 + k))));
-            if (turns)          // its columns are those of the camera's centre: the +- about the middle is that of the shifts
-            {
-                text.clear();
-                const Eigen::Index of = found.covariance.rows() - 6;
-                for (int k = 0; k < 3; k++)
-                    text += (k ? ", " : "") + plusMinus(moved[k], std::sqrt(std::max(0., found.covariance(of + k, of + k))));
-            }
+                text += (k ? ", " : "") + plusMinus(moved[k], stdOfSum(found, {of + k}));
             return format("the images contradict --placement-std=%.2g: between direct and glass images all boards (or the cameras' mount) "
                           "moved by (", known) + text + ")" + (turns ? format(", turned by %.3f degrees", norm(turned)) : std::string())
                 + howSure(deviations); }});
@@ -82,13 +77,12 @@ void addLenses(const FittedRig& rig, std::vector<Cause>& causes)
     const double TELLING = 3.;          // standard deviations of a parameter alone
     for (int c = 0; c < rig.data.cameraCount; c++)
     {
-        const std::string where = ofCamera(rig, c), suffix = cameraSuffix(c);
+        const std::string where = ofCamera(c, rig.data.cameraCount), suffix = cameraSuffix(c);
         const ParameterColumns at = columnsOf(rig.fit.rig, c);
         if (at.lensCount < 4)
             continue;
         const auto factor = [](const Relaxed& found) {
-            const Eigen::Index last = found.covariance.rows() - 1;
-            return plusMinus(1. + found.shifts[0], std::sqrt(std::max(0., found.covariance(last, last)))); };
+            return plusMinus(1. + found.shifts[0], stdOfSum(found, {(int)found.covariance.rows() - 1})); };
         if (rig.hasBothStates(c))
             causes.push_back({format("focus %d", c), {focusOf(rig, c, true)}, [=](const Relaxed& found, double deviations) {
                 return "the focus or zoom" + where + " changed: through the window the focal length is " + factor(found)

@@ -189,9 +189,8 @@ const char* const WORDS[] = {"turned by 180 degrees", "mirrored", "turned by 90 
 
 std::string sentenceOf(Change change, const RigData& data, int camera, bool directToo)
 {
-    const std::string of = data.cameraCount == 1 ? "" : format(" of camera %d", camera + 1);
     if (directToo)
-        return "the images" + of + " are " + WORDS[change] + " to those of the other cameras";
+        return "the images" + ofCamera(camera, data.cameraCount) + " are " + WORDS[change] + " to those of the other cameras";
     const bool hasPairs = data.countPairs(camera) > 0;
     return "the --glass" + cameraSuffix(camera) + " images are " + WORDS[change]
         + (hasPairs ? " to the --direct" + cameraSuffix(camera) + " images" : " to those of the other cameras");

@@ -126,11 +126,6 @@ Cause valueCause(const FittedRig& rig, const GivenValue& given, const std::vecto
 
 } // namespace
 
-std::string ofCamera(const FittedRig& rig, int camera)
-{
-    return rig.data.cameraCount == 1 ? "" : format(" of camera %d", camera + 1);
-}
-
 std::string ofWindow(const FittedRig& rig, int camera)
 {
     return countWindows(rig.fit.rig) == 1 ? "" : format(" of camera %d's window", camera + 1);

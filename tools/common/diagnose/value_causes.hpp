@@ -40,9 +40,6 @@ struct FittedRig
     }
 };
 
-//! " of camera 2"; nothing where there is one.
-std::string ofCamera(const FittedRig& rig, int camera);
-
 //! " of camera 2's window"; nothing where there is one.
 std::string ofWindow(const FittedRig& rig, int camera);
 

@@ -99,8 +99,7 @@ void setSheet(PageValues& page, const RigCalibration& c, const Assessment& a, co
 std::string windowSentence(const RigCalibration& c, int k)
 {
     const GlassWindow window = c.fit.rig.cameras[k]->window();
-    const std::string which = format("%sThe %s", k ? " " : "", nameOfShape(window))
-        + (c.data.cameraCount == 1 ? "" : format(" of camera %d", k + 1));
+    const std::string which = format("%sThe %s", k ? " " : "", nameOfShape(window)) + ofCamera(k, c.data.cameraCount);
     if (const std::optional<RoundWindow> round = roundWindowOf(c, k))
         return which + (round->shape == "dome" ? " has its centre " : " has its axis ") + round->offsetWords(c.unit)
             + (round->shape == "dome" ? "; in its centre it would not refract." : ".");
