@@ -1,15 +1,14 @@
 // This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
 // SPDX-License-Identifier: Apache-2.0
 
-#include "accept/acceptance_output.hpp"
+#include "accept/certificate.hpp"
 #include "accept/test_points.hpp"
 #include "accept/acceptance.hpp"
-#include "calibrate/calibration_images.hpp"
+#include "calibrate/provenance.hpp"
 #include "calibrate/conditions.hpp"
 #include "calibrate/units.hpp"
 #include "console/cli.hpp"
 #include "console/file_output.hpp"
-#include "console/outputs.hpp"
 #include "console/sha256.hpp"
 #include "console/table.hpp"
 #include "report/plot.hpp"

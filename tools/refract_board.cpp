@@ -3,7 +3,7 @@
 
 #include "calibrate/units.hpp"
 #include "console/cli.hpp"
-#include "console/outputs.hpp"
+#include "console/file_output.hpp"
 #include "target/board_page.hpp"
 
 #include <filesystem>

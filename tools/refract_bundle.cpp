@@ -9,7 +9,6 @@
 #include "console/cli.hpp"
 #include "console/file_output.hpp"
 #include "console/numbers.hpp"
-#include "console/outputs.hpp"
 #include "console/view_names.hpp"
 #include "formats/point_table.hpp"
 #include "match/moved_rig.hpp"

@@ -60,24 +60,20 @@ value. A PASS that is not the whole truth says so: "PASS; look at the weak point
 The same input gives the same bytes: outputs carry the time of the newest image (or that of SOURCE_DATE_EPOCH).)";
 
 #include "assess/given_images.hpp"
-#include "calibrate/given_rig.hpp"
+#include "calibrate/given_window.hpp"
 #include "calibrate/lens_choice.hpp"
 #include "calibrate/pinhole_camera.hpp"
 #include "calibrate/units.hpp"
 #include "calibrate/window_face.hpp"
 #include "console/cli.hpp"
 #include "console/file_output.hpp"
-#include "console/outputs.hpp"
 #include "console/progress.hpp"
 #include "console/sha256.hpp"
 #include "console/table.hpp"
 #include "diagnose/image_mixups.hpp"
 #include "formats/point_table.hpp"
-#include "report/digest.hpp"
 #include "report/plot.hpp"
-#include "report/report.hpp"
 #include "report/summary.hpp"
-#include "report/summary_json.hpp"
 #include <iostream>
 #include <map>
 #include <memory>

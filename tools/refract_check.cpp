@@ -39,11 +39,8 @@ estimates have their +-).)";
 
 #include "calibrate/units.hpp"
 #include "check/check_output.hpp"
-#include "check/kept_check.hpp"
 #include "console/cli.hpp"
-#include "console/colour.hpp"
 #include "console/file_output.hpp"
-#include "console/outputs.hpp"
 #include "console/table.hpp"
 #include <iostream>
 

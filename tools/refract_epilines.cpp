@@ -7,11 +7,10 @@
 #include "console/cli.hpp"
 #include "console/file_output.hpp"
 #include "console/images.hpp"
-#include "console/outputs.hpp"
-#include "console/point_file.hpp"
+#include "console/csv.hpp"
 #include "console/table.hpp"
 #include "report/drawing.hpp"
-#include "target/missing_target.hpp"
+#include "target/target_search.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -6,7 +6,6 @@
 #include "console/cli.hpp"
 #include "console/file_output.hpp"
 #include "console/numbers.hpp"
-#include "console/outputs.hpp"
 #include "console/progress.hpp"
 #include "console/table.hpp"
 #include "export/export_files.hpp"

@@ -37,7 +37,6 @@ met, or the boards contradict the sheet.)";
 #include "calibrate/units.hpp"
 #include "console/cli.hpp"
 #include "console/file_output.hpp"
-#include "console/outputs.hpp"
 #include "console/progress.hpp"
 #include "console/table.hpp"
 #include "report/plot.hpp"

@@ -4,7 +4,6 @@
 #include "console/cli.hpp"
 #include "console/csv.hpp"
 #include "console/file_output.hpp"
-#include "console/outputs.hpp"
 #include "console/table.hpp"
 #include "console/view_names.hpp"
 #include "match/depth_range.hpp"

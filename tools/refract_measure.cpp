@@ -6,13 +6,11 @@
 #include "measure/measured_doubts.hpp"
 #include "measure/measured_views.hpp"
 #include "measure/measurement.hpp"
-#include "measure/outside_image.hpp"
 #include "calibrate/conditions.hpp"
 #include "calibrate/units.hpp"
 #include "console/cli.hpp"
 #include "console/csv.hpp"
 #include "console/file_output.hpp"
-#include "console/outputs.hpp"
 #include "console/table.hpp"
 #include "console/view_names.hpp"
 

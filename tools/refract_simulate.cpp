@@ -4,7 +4,6 @@
 #include "calibrate/rig_model.hpp"
 #include "console/cli.hpp"
 #include "console/file_output.hpp"
-#include "console/outputs.hpp"
 #include "console/progress.hpp"
 #include "simulate/scene_file.hpp"
 #include "simulate/light_source.hpp"

@@ -9,17 +9,15 @@
 #include "console/file_output.hpp"
 #include "console/frames.hpp"
 #include "console/numbers.hpp"
-#include "console/outputs.hpp"
 #include "console/progress.hpp"
 #include "console/table.hpp"
 #include "console/view_names.hpp"
 #include "stereo/checked_stereo.hpp"
 #include "stereo/cloud_file.hpp"
 #include "stereo/depth_picture.hpp"
-#include "stereo/depth_search.hpp"
+#include "stereo/wide_search.hpp"
 #include "stereo/pair_reader.hpp"
-#include "stereo/raw_depth.hpp"
-#include "stereo/stereo_table.hpp"
+#include "stereo/dense_stereo.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -10,7 +10,6 @@
 #include "console/file_output.hpp"
 #include "console/frames.hpp"
 #include "console/images.hpp"
-#include "console/outputs.hpp"
 #include "console/progress.hpp"
 
 #include <opencv2/imgproc.hpp>

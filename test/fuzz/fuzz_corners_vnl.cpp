@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "file_harness.hpp"
-#include "target/detected_points.hpp"
+#include "target/detected_images.hpp"
 
 // mrcal's corners.vnl, of a target of six points.
 

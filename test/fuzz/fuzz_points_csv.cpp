@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "file_harness.hpp"
-#include "target/detected_points.hpp"
+#include "target/detected_images.hpp"
 
 // Observed points of any target, for all tools that take images of one.
 

@@ -5,7 +5,7 @@
 #ifndef REFRACT_TEST_TOOLS_PAPER_RIG_HPP
 #define REFRACT_TEST_TOOLS_PAPER_RIG_HPP
 
-#include "measure/view_derivatives.hpp"
+#include "measure/rig_vector.hpp"
 #include "calibrate/rig_data.hpp"
 #include "scenes.hpp"
 #include <opencv2/calib3d.hpp>

@@ -3,7 +3,7 @@
 
 #include "measure/eigen_matrix.hpp"
 #include "assess/change.hpp"
-#include "assess/check_input.hpp"
+#include "assess/check_problem.hpp"
 #include "assess/rig_check.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "console/failure.hpp"

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // What is wrong with images before a fit: names that pair nothing, one image under two names, parallel boards.
-#include "calibrate/data_checks.hpp"
+#include "calibrate/rig_data.hpp"
 #include "paper_rig.hpp"
 
 using namespace cv;

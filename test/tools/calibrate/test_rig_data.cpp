@@ -4,7 +4,7 @@
 // What belongs together: points of files by their coordinates, images by their names, cameras by what they see in common.
 #include "calibrate/poses_file.hpp"
 #include "calibrate/rig_data.hpp"
-#include "target/detected_points.hpp"
+#include "target/detected_images.hpp"
 #include "temporary_folder.hpp"
 #include <catch2/catch.hpp>
 #include <opencv2/calib3d.hpp>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // Whose image is whose, and when, in a model of COLMAP.
-#include "colmap/survey_start.hpp"
+#include "colmap/survey_adjustment.hpp"
 #include "console/failure.hpp"
 #include "temporary_folder.hpp"
 #include <catch2/catch.hpp>

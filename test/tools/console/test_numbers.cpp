@@ -4,9 +4,9 @@
 // Numbers in options and point files mean the same where people write a decimal comma.
 #include "console/numbers.hpp"
 #include "console/options.hpp"
-#include "console/point_file.hpp"
+#include "console/csv.hpp"
 #include "german.hpp"
-#include "target/detected_points.hpp"
+#include "target/detected_images.hpp"
 #include <cmath>
 #include <fstream>
 

@@ -4,7 +4,6 @@
 // What must not be written over: files that are read, and those that another run is about to write.
 #include "console/failure.hpp"
 #include "console/file_output.hpp"
-#include "console/outputs.hpp"
 #include "temporary_folder.hpp"
 #include <catch2/catch.hpp>
 #include <fstream>

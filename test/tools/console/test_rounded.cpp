@@ -4,7 +4,6 @@
 // Numbers beside their uncertainty, and letters of any encoding.
 #include "console/numbers.hpp"
 #include "console/table.hpp"
-#include "console/utf8.hpp"
 #include <catch2/catch.hpp>
 
 using namespace tools;

@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // Mistakes in what is given, told from images that do not fit.
-#include "diagnose/fit_quality.hpp"
+#include "diagnose/plain_fit.hpp"
 #include "diagnose/diagnosis.hpp"
-#include "diagnose/explained_error.hpp"
 #include "diagnose/image_disagreement.hpp"
 #include "diagnose/value_mistakes.hpp"
 #include "assess/rig_calibration.hpp"

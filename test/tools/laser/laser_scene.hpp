@@ -6,7 +6,7 @@
 #define REFRACT_TEST_TOOLS_LASER_SCENE_HPP
 
 #include "calibrate/rig_model.hpp"
-#include "measure/view_derivatives.hpp"
+#include "measure/rig_vector.hpp"
 #include "target/target.hpp"
 #include "scenes.hpp"
 #include <opencv2/calib3d.hpp>

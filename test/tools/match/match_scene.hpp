@@ -5,13 +5,12 @@
 #define REFRACT_TEST_MATCH_SCENE_HPP
 
 #include "measure/rig_vector.hpp"
-#include "assess/check_input.hpp"
+#include "assess/check_problem.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "match/scene_matches.hpp"
 #include "math/dense.hpp"
-#include "measure/view_derivatives.hpp"
 #include "scenes.hpp"
-#include "simulate/render_scene.hpp"
+#include "simulate/render.hpp"
 
 #include <memory>
 

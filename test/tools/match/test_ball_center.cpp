@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // Where a ball's centre is seen: not in the middle of its image.
-#include "match/wand_finder.hpp"
+#include "match/wand_matches.hpp"
 #include "scenes.hpp"
 #include <catch2/catch.hpp>
 #include <opencv2/imgproc.hpp>

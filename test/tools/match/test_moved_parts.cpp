@@ -4,7 +4,7 @@
 // What errs together, by less than one match shows.
 #include "drawn_matches.hpp"
 #include "assess/rig_check.hpp"
-#include "match/scene_check.hpp"
+#include "match/scene_matches.hpp"
 #include <catch2/catch.hpp>
 #include <algorithm>
 #include <map>

@@ -4,7 +4,7 @@
 // Matches of rendered scenes against the truth, and checks of rigs by them.
 #include "match_scene.hpp"
 #include "assess/rig_check.hpp"
-#include "match/scene_check.hpp"
+#include "match/scene_matches.hpp"
 #include <catch2/catch.hpp>
 #include <algorithm>
 #include <array>

@@ -7,7 +7,7 @@
 #include "assess/rig_check.hpp"
 #include "bundle/bundle_adjustment.hpp"
 #include "match/moved_rig.hpp"
-#include "match/scene_check.hpp"
+#include "match/scene_matches.hpp"
 #include <catch2/catch.hpp>
 #include <algorithm>
 #include <cmath>

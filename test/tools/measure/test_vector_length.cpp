@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // How long a small vector is of which one axis may be known much worse than another.
-#include "measure/vector_length.hpp"
+#include "measure/eigen_matrix.hpp"
 #include "../normal_draw.hpp"
 #include "scenes.hpp"
 #include <catch2/catch.hpp>

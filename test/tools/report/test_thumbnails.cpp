@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // Which images a report shows, and how their points are told apart.
-#include "report/thumbnails.hpp"
+#include "report/figures.hpp"
 #include "temporary_folder.hpp"
 #include <catch2/catch.hpp>
 #include <opencv2/imgcodecs.hpp>

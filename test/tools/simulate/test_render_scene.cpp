@@ -3,7 +3,7 @@
 
 // Depth of scenes against other ways to compute it, through every window and every lens; what two cameras see of one point.
 #include "scenes.hpp"
-#include "simulate/render_scene.hpp"
+#include "simulate/render.hpp"
 
 #include <numeric>
 #include <opencv2/calib3d.hpp>

@@ -3,7 +3,7 @@
 
 // The texture of scenes: made of its seed alone, textured at every scale, and without what samples cannot show.
 #include "scenes.hpp"
-#include "simulate/solid_texture.hpp"
+#include "simulate/surface.hpp"
 
 #include <algorithm>
 

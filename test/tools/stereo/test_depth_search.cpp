@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "scene_pair.hpp"
-#include "stereo/depth_search.hpp"
+#include "stereo/wide_search.hpp"
 #include <catch2/catch.hpp>
 #include <cmath>
 

@@ -5,7 +5,6 @@
 #include "console/failure.hpp"
 #include "drawn_dots.hpp"
 #include "paths.hpp"
-#include "target/dot_matching.hpp"
 #include "target/dot_target.hpp"
 #include "temporary_folder.hpp"
 #include <opencv2/calib3d.hpp>

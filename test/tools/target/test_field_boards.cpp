@@ -6,7 +6,7 @@
 #include "console/numbers.hpp"
 #include "target/april_grid.hpp"
 #include "target/dot_lattice.hpp"
-#include "target/missing_target.hpp"
+#include "target/target_search.hpp"
 #include "target/target.hpp"
 #include "scenes.hpp"
 #include <opencv2/imgcodecs.hpp>

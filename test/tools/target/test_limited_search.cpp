@@ -4,7 +4,7 @@
 // A search that would never end, and the progress that is told meanwhile.
 #include "console/progress.hpp"
 #include "target/limited_search.hpp"
-#include "target/partial_chessboard.hpp"
+#include "target/chessboard.hpp"
 #include <catch2/catch.hpp>
 #include <opencv2/imgproc.hpp>
 #include <chrono>

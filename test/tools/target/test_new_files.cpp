@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // Files that arrive come once, when they have stopped to grow; those of no use come again when they are written anew.
-#include "target/new_files.hpp"
+#include "calibrate/live_pairs.hpp"
 #include "temporary_folder.hpp"
 #include <catch2/catch.hpp>
 #include <fstream>

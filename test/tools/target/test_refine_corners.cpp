@@ -3,7 +3,7 @@
 
 // Corners to sub-pixels, also where something that is not the board is near.
 #include "scenes.hpp"
-#include "target/refine_corners.hpp"
+#include "target/refine_points.hpp"
 #include <catch2/catch.hpp>
 #include <opencv2/imgproc.hpp>
 

@@ -3,7 +3,7 @@
 
 // Edges of dots, to thousandths of a pixel; circle grids whose dots are large and tilted.
 #include "target/circle_grid.hpp"
-#include "target/refine_dots.hpp"
+#include "target/refine_points.hpp"
 #include "scenes.hpp"
 
 #include <opencv2/calib3d.hpp>

@@ -5,7 +5,6 @@
 #define REFRACT_TOOLS_ACCEPTANCE_HPP
 
 #include "accept/gum_table.hpp"
-#include "accept/lengths.hpp"
 
 /* An acceptance test: errors of indication of calibrated lengths against what is permitted, decided with guard bands (ISO 14253-1):
 
@@ -15,6 +14,49 @@ U_test is of the test alone: the certified length, its temperature, the noise of
 may err by, too. What a rig errs by is what is tested: it may not excuse a failure by how badly it is known, but a pass must hold wherever
 in its volume it measures. */
 namespace tools {
+
+/* Calibrated lengths, as their certificate says, and the points between which they are. */
+
+struct CalibratedLength
+{
+    std::string name;
+    size_t ends[2];                 //!< indices into the points
+    double length, U;               //!< as certified, at the temperature of the test; U expanded, k = 2
+    std::vector<CertifiedSource> ofTemperature = {};
+};
+
+//! What the length is uncertain by: its certificate, then its temperature.
+std::vector<CertifiedSource> sourcesOf(const CalibratedLength& length);
+
+/** The standard at the test: it has grown since its certificate by length*expansion*(temperature - reference). NaN: not stated. Its
+certificate is then taken to be valid at the temperature of the test. */
+struct StandardTemperature
+{
+    double temperature, std;            //!< degrees Celsius, K
+    double expansion, expansionStd;     //!< 1/K
+    double reference;                   //!< of the certificate, degrees Celsius
+
+    bool isStated() const { return temperature == temperature; }
+    CalibratedLength applied(const CalibratedLength& length) const;
+};
+
+/** lengths.csv: name,image1,id1,image2,id2,length,U. Where both images are empty and the points have some, the length is one of each
+image that shows both of its points (a board); its name then goes on with the image. Refuses with a Failure that names file and
+line: a length without an uncertainty, a name or a pair that stands twice, points that are not there or have no answer. */
+std::vector<CalibratedLength> readLengths(const std::string& path, const TestPoints& points);
+
+//! The largest error that is allowed to a length: a number, or "A+L/K" as makers of measuring machines state it.
+class PermissibleError
+{
+public:
+    explicit PermissibleError(const std::string& text);     //!< throws Failure
+    double of(double length) const { return constant_ + (perLength_ > 0 ? length/perLength_ : 0.); }
+    const std::string& text() const { return text_; }
+
+private:
+    std::string text_;
+    double constant_ = 0., perLength_ = 0.;
+};
 
 enum class Decision { PASS, FAIL, UNDECIDED };
 

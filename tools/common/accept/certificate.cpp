@@ -10,7 +10,6 @@
 #include "console/sha256.hpp"
 #include "console/table.hpp"
 #include "console/times.hpp"
-#include "console/utf8.hpp"
 #include "report/page_template.hpp"
 #include "report/plot.hpp"
 #include <algorithm>

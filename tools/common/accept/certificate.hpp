@@ -6,6 +6,7 @@
 
 #include "accept/acceptance.hpp"
 #include "calibrate/calib_file.hpp"
+#include <iosfwd>
 #include <string>
 
 /* The certificate of an acceptance test, to print and sign, and for machines. The same input gives the same bytes. */
@@ -62,6 +63,12 @@ std::string certificateDcc(const Certificate& certificate);
 
 //! Everything, as JSON.
 std::string certificateJson(const Certificate& certificate);
+
+//! Some lines of 80 columns: the decision, what it rests on, what is missing. @param certificate its file; empty: none
+void printAcceptance(std::ostream& out, const Acceptance& acceptance, const std::string& certificate);
+
+//! Every length, then the budgets.
+void printTables(std::ostream& out, const Acceptance& acceptance, const std::vector<GumTable>& budgets);
 
 } // namespace tools
 

@@ -1,7 +1,7 @@
 // This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
 // SPDX-License-Identifier: Apache-2.0
 
-#include "accept/lengths.hpp"
+#include "accept/acceptance.hpp"
 #include "console/csv.hpp"
 #include "console/failure.hpp"
 #include "console/numbers.hpp"

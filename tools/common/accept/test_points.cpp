@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "accept/test_points.hpp"
-#include "calibrate/calibration_images.hpp"
+#include "calibrate/provenance.hpp"
 #include "console/csv.hpp"
 #include "console/failure.hpp"
 #include "console/numbers.hpp"
@@ -10,7 +10,7 @@
 #include "measure/consistency.hpp"
 #include "measure/measured_views.hpp"
 #include "measure/measurement.hpp"
-#include "measure/outside_image.hpp"
+#include "measure/measured_doubts.hpp"
 #include <algorithm>
 #include <limits>
 #include <set>

@@ -5,10 +5,28 @@
 #define REFRACT_TOOLS_CHANGE_NAMING_HPP
 
 #include "assess/rig_check.hpp"
-#include "assess/swapped_images.hpp"
+#include "calibrate/rig_data.hpp"
+#include "calibrate/rig_model.hpp"
 
 /* Which of the changes that were tested explains new images. */
 namespace tools {
+
+/* Images that are not what they are given for: turned, mirrored, exchanged, of other moments. */
+
+//! The views with one such mistake undone.
+struct Undone
+{
+    std::string name;           //!< "images of camera 2 mirrored"
+    int camera;                 //!< from 0; negative: of the rig as a whole
+    std::vector<View> views;
+    int poses = 0;              //!< more than before
+};
+
+//! Mistakes that leave residuals of many pixels.
+std::vector<Undone> swappedImages(const RigModel& rig, const std::vector<View>& views);
+
+//! Images given as of one place of the board, or of one moment, that are not: any of them may fit better so.
+std::vector<Undone> unrelatedImages(const RigModel& rig, const std::vector<View>& views);
 
 //! Of so large residuals or larger ones from noise alone. @param parameters that were estimated; dof of the noise
 double probabilityOfResiduals(const CheckProblem& problem, double chiSquare, int parameters, double dof);

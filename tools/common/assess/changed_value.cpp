@@ -3,7 +3,7 @@
 
 #include "assess/changed_value.hpp"
 #include "console/table.hpp"
-#include "measure/vector_length.hpp"
+#include "measure/eigen_matrix.hpp"
 #include <algorithm>
 #include <cmath>
 

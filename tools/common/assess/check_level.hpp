@@ -4,6 +4,7 @@
 #ifndef REFRACT_TOOLS_CHECK_LEVEL_HPP
 #define REFRACT_TOOLS_CHECK_LEVEL_HPP
 
+#include "assess/check_problem.hpp"
 #include "measure/eigen_matrix.hpp"
 #include <vector>
 
@@ -28,6 +29,23 @@ double probabilityOf(double gain, int count, double dof);
 /** The probability below which the least one of all hypotheses is with the probability falseAlarm, if nothing changed. Hypotheses
 overlap, so that this is more than Bonferroni's falseAlarm / count: the quantile over draws of the score, always the same ones. */
 double criticalProbability(const std::vector<TestedDirections>& tested, const MatrixXd& G, double dof, double falseAlarm);
+
+/* What a check cannot show: a given value that was wrong in the calibration, and still is. The calibrated values have absorbed most of it,
+as they would now. */
+
+struct UnseenError
+{
+    std::string of;             //!< "thickness"
+    double least;               //!< that would show; infinity: none would
+    std::string unit;           //!< empty: it has none
+    bool isOfTarget = false;    //!< its size: a target of another size shows it
+};
+
+/** Each error moves the calibrated values as its source in the calibration file says; of several windows the one that shows least. First
+that of the target. @param dof of the noise. @param critical probability of a gain that is a change. @param power probability with which it
+must show */
+std::vector<UnseenError> unseenErrors(const CheckInput& input, const CheckProblem& problem, const CheckFit& asCalibrated, double dof,
+                                      double critical, double power);
 
 } // namespace tools
 

@@ -27,11 +27,11 @@ std::string prefixOf(const RigCalibration& calibration, int camera);
 //! What the faces of the windows are taken to be, in a word.
 std::string shapeWords(const RigCalibration& calibration);
 
-//! What is hardly known of a camera's window: `window_findings.cpp`.
+//! What is hardly known of a camera's window.
 void checkWindow(const RigCalibration& calibration, int camera, CollectedFindings& findings);
 //! Parameters of windows that images tell together only.
 void checkCorrelations(const RigCalibration& calibration, Findings& findings);
-//! What was taken as exact: `assumptions.cpp`.
+//! What was taken as exact.
 void checkAssumptions(const RigCalibration& calibration, Findings& findings);
 
 } // namespace tools

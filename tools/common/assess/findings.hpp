@@ -4,10 +4,26 @@
 #ifndef REFRACT_TOOLS_FINDINGS_HPP
 #define REFRACT_TOOLS_FINDINGS_HPP
 
-#include "assess/assessment.hpp"
-#include "console/colour.hpp"
+#include "assess/advice.hpp"
+#include "assess/budget.hpp"
+#include "console/table.hpp"
+#include "diagnose/hypothesis_tests.hpp"
+#include "measure/point_error.hpp"
 
 namespace tools {
+
+/* The quality of a calibration: the errors of measured points, what they are made of, the gain of the next images. */
+
+struct Assessment
+{
+    std::vector<ErrorMap> errors;           //!< from half the nearest to twice the farthest board
+    std::vector<ErrorMap> limits;           //!< at the ranges of Limits::errors
+    std::vector<BudgetRow> budget;
+    Advice advice;
+    std::vector<Contradiction> contradictions;
+};
+
+Assessment assess(const RigCalibration& calibration);
 
 //! A limit that the caller set, and the value to compare with it.
 struct LimitCheck
@@ -38,6 +54,9 @@ struct Findings
 };
 
 Findings findingsOf(const RigCalibration& calibration, const Assessment& assessment);
+
+//! What to do with the result: correct a value, take images, know a value better, or measure. Half a sentence.
+std::string nextStep(const RigCalibration& calibration, const Assessment& assessment, const Findings& findings);
 
 } // namespace tools
 

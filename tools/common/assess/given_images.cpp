@@ -3,7 +3,7 @@
 
 #include "assess/given_images.hpp"
 #include "assess/advice.hpp"
-#include "calibrate/data_checks.hpp"
+#include "calibrate/rig_data.hpp"
 #include "calibrate/fit.hpp"
 #include "calibrate/outliers.hpp"
 #include "calibrate/parameter_columns.hpp"
@@ -12,8 +12,7 @@
 #include "console/failure.hpp"
 #include "console/numbers.hpp"
 #include "diagnose/diagnosis.hpp"
-#include "diagnose/explained_error.hpp"
-#include "diagnose/fit_quality.hpp"
+#include "diagnose/plain_fit.hpp"
 #include "measure/point_error.hpp"
 #include <algorithm>
 #include <iostream>

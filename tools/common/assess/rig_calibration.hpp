@@ -5,9 +5,9 @@
 #define REFRACT_TOOLS_RIG_CALIBRATION_HPP
 
 #include "assess/cross_validation.hpp"
-#include "calibrate/calibration_images.hpp"
 #include "calibrate/lens_choice.hpp"
 #include "calibrate/outliers.hpp"
+#include "calibrate/provenance.hpp"
 #include <optional>
 
 /* A complete calibration, and the numbers that describe it. */
@@ -35,7 +35,7 @@ struct Photo
     std::vector<cv::Point2d> points;            //!< found; empty: the target was not
 };
 
-//! The data of the table, the JSON summary and the report; what is derived from them is in assessment.hpp.
+//! The data of the table, the JSON summary and the report; what is derived from them is in findings.hpp.
 struct RigCalibration
 {
     RigData data;
@@ -53,7 +53,7 @@ struct RigCalibration
     std::vector<std::string> withoutTarget;     //!< images in which the target was not found
     std::vector<Photo> photos;
     std::vector<UsedImage> used;                //!< images that show the target
-    std::vector<std::string> notices;           //!< of the checks of the images, see data_checks.hpp
+    std::vector<std::string> notices;           //!< of the checks of the images, see data_checks.cpp
     std::vector<Rejected> fewPoints;            //!< images that have no pose, already removed from data
     Outliers outliers;                          //!< points and images, already removed from data
     std::vector<std::string> inputs;            //!< files that it was made from
@@ -102,6 +102,29 @@ std::optional<CalibratedVolume> calibratedVolume(const RigCalibration& calibrati
 
 //! Distance of the board's points from camera 1, at the views with a glass image: nearest, median, farthest z.
 cv::Vec3d workingDepth(const RigCalibration& calibration, int camera);
+
+/* What a dome or tube is to the camera in it: one in the centre of a dome sees as if there were none. */
+
+struct RoundWindow
+{
+    std::string shape;                  //!< "dome", "tube"
+    double offset, offsetStd;           //!< of the camera from the centre, or from a tube's axis
+    double px, length, depth;           //!< the farthest that it moves a point of the image: there, and at the middle depth of the boards
+    double withPx, ignoredPx;           //!< RMS through the window: of the fit, and with the window ignored
+
+    //! The images fit as well if it is ignored.
+    bool isNeedless() const;
+    //! "3.1 +- 0.05 mm from the camera, which moves points by up to 2.1 px (0.7 mm at z = 600 mm)"
+    std::string offsetWords(const std::string& unit) const;
+    //! What the images cannot tell; empty: it has to be modelled.
+    std::string needless(const std::string& unit) const;
+};
+
+//! None: the window is no such one.
+std::optional<RoundWindow> roundWindowOf(const RigCalibration& calibration, int camera);
+
+/** Where a window is, in words: "tilted by 3.21 +- 0.02 degrees", or that of a dome. The +- of a tilt is that of the normal. */
+std::string placeInWords(const RigCalibration& calibration, int camera);
 
 } // namespace tools
 

@@ -3,14 +3,13 @@
 
 #include "assess/rig_check.hpp"
 #include "assess/change_naming.hpp"
-#include "assess/swapped_images.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "console/failure.hpp"
 #include "console/progress.hpp"
 #include "console/table.hpp"
 #include "math/dense.hpp"
 #include "measure/distributions.hpp"
-#include "measure/image_noise.hpp"
+#include "measure/view_observations.hpp"
 #include <algorithm>
 #include <cmath>
 #include <functional>

@@ -5,8 +5,8 @@
 #define REFRACT_TOOLS_RIG_CHECK_HPP
 
 #include "assess/changed_value.hpp"
-#include "assess/check_input.hpp"
-#include "assess/unseen_errors.hpp"
+#include "assess/check_problem.hpp"
+#include "assess/check_level.hpp"
 #include "calibrate/rig_data.hpp"
 #include "measure/view_observations.hpp"
 

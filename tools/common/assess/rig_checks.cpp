@@ -1,7 +1,7 @@
 // This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
 // SPDX-License-Identifier: Apache-2.0
 
-#include "assess/rig_checks.hpp"
+#include "assess/cross_validation.hpp"
 #include "calibrate/fit.hpp"
 #include "calibrate/pinhole_camera.hpp"
 #include "calibrate/refit.hpp"

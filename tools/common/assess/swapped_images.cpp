@@ -1,9 +1,9 @@
 // This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
 // SPDX-License-Identifier: Apache-2.0
 
-#include "assess/swapped_images.hpp"
+#include "assess/change_naming.hpp"
 #include "console/table.hpp"
-#include "diagnose/image_changes.hpp"
+#include "diagnose/calibration_input.hpp"
 #include <algorithm>
 #include <functional>
 

@@ -2,14 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "bundle/bundle_findings.hpp"
-#include "bundle/start_covariance.hpp"
+#include "bundle/bundle_start.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "calibrate/units.hpp"
 #include "calibrate/window_face.hpp"
 #include "console/failure.hpp"
 #include "console/numbers.hpp"
 #include "console/table.hpp"
-#include "diagnose/fit_quality.hpp"
+#include "diagnose/plain_fit.hpp"
 #include "measure/rig_vector.hpp"
 #include <algorithm>
 #include <cmath>

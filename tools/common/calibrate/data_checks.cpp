@@ -1,7 +1,7 @@
 // This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
 // SPDX-License-Identifier: Apache-2.0
 
-#include "calibrate/data_checks.hpp"
+#include "calibrate/rig_data.hpp"
 #include "console/failure.hpp"
 #include "console/table.hpp"
 #include <opencv2/calib3d.hpp>

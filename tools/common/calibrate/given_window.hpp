@@ -4,8 +4,10 @@
 #ifndef REFRACT_TOOLS_GIVEN_WINDOW_HPP
 #define REFRACT_TOOLS_GIVEN_WINDOW_HPP
 
+#include "calibrate/given_places.hpp"
 #include "calibrate/given_std.hpp"
 #include "calibrate/parameter_columns.hpp"
+#include "calibrate/starting_model.hpp"
 #include <map>
 
 /* What a command line says of windows: their shape, their values, and what of them is free. */
@@ -67,6 +69,30 @@ cv::refract::GlassWindow withEstimated(cv::refract::GlassWindow window, const Gi
 
 //! How well a window's values are given, into the covariance of a camera's or a rig's parameters; what is not known of its place stays 0.
 void putVariances(const GivenStd& std, const ParameterColumns& at, cv::Mat& covariance);
+
+//! What the options of refract_calib say of the windows of all cameras: what is known, how well, and what is to be found.
+struct GivenRigOptions
+{
+    GivenWindowOptions window;
+    GivenStdOptions std;
+    GivenPlaces places;
+    std::vector<std::string> free;          //!< names of freeFlags()
+    std::string windowOfCamera;             //!< "1,1,2,2"; empty: each has its own
+    bool sharedWindow = false;
+    std::string unit = "mm";
+
+    /** Throws Failure where options do not go together, or ask for what no image can tell.
+    @param knowsPoses of the target. @param square of a board; 0: there is none */
+    RigOptions of(int cameras, Channel channel, bool knowsPoses, double square) const;
+    //! Of a liquid that was given as a layer, which stays where it is only between two others; empty: there is none.
+    std::string noticeOfLiquid(const cv::refract::GlassWindow& given) const;
+
+private:
+    bool isDistanceKnown() const;
+    std::vector<int> windowsOf(int cameras) const;
+    void takePlaces(int cameras, RigOptions& rig) const;
+    void takeStd(double square, RigOptions& rig) const;
+};
 
 } // namespace tools
 

@@ -7,7 +7,6 @@
 #include "console/numbers.hpp"
 #include "console/options.hpp"
 #include "target/board_quality.hpp"
-#include "target/new_files.hpp"
 
 #include <algorithm>
 #include <chrono>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "calibrate/rig_data.hpp"
-#include "calibrate/calibration_images.hpp"
+#include "calibrate/provenance.hpp"
 #include "console/failure.hpp"
 #include "console/options.hpp"
 #include "console/table.hpp"

@@ -113,6 +113,18 @@ through the window gives the number of cameras.
 @param fewest points that an image must show */
 RigData groupIntoViews(const Target* target, const RigImages& sets, bool unpaired, int fewest = MIN_POSE_POINTS);
 
+/* Whether the images are what they are meant to be, before anything is fitted to them. */
+
+/** Direct and glass images belong together by their names. Throws Failure if both are there and no name is common, or if the
+target was found in both images of no pair: the user meant pairs, and a calibration without them is far worse. */
+void requirePairs(const RigImages& sets);
+
+//! The same as far as the names of images tell, before any is searched for the target.
+void requirePairNames(const RigSources& sources);
+
+//! What spoils a calibration without showing in its residuals: one image under two names, boards that are all parallel.
+std::vector<std::string> noticesOf(const RigImages& sets, const RigData& data);
+
 } // namespace tools
 
 #endif // REFRACT_TOOLS_RIG_DATA_HPP

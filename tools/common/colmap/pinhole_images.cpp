@@ -8,7 +8,6 @@
 #include "console/file_output.hpp"
 #include "console/json.hpp"
 #include "console/numbers.hpp"
-#include "console/outputs.hpp"
 #include "console/progress.hpp"
 #include "formats/colmap_cameras.hpp"
 

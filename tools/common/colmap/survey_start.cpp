@@ -1,7 +1,7 @@
 // This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
 // SPDX-License-Identifier: Apache-2.0
 
-#include "colmap/survey_start.hpp"
+#include "colmap/survey_adjustment.hpp"
 #include "colmap/scale_of_window.hpp"
 #include "console/csv.hpp"
 #include "console/failure.hpp"

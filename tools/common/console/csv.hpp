@@ -58,6 +58,11 @@ std::vector<std::string> headingOf(const std::string& path);
 //! A cell of a table with commas between; blanks are quoted too, for readers that split at them.
 std::string cellOf(const std::string& text);
 
+/** Pixels from a text file, one "u v" or "u,v" a line; lines with '#' are comments. A first line with the column names u, v
+(or u1, v1: the points.csv of refract_measure) tells which columns to take; otherwise it is the first two.
+Throws Failure that names file and line. */
+std::vector<cv::Point2d> readPixels(const std::string& path);
+
 //! Numbers of a row, each with a comma before it; NaN as nan.
 void putNumbers(std::ostream& csv, const std::vector<double>& numbers);
 

@@ -71,6 +71,28 @@ void writeImage(const std::string& path, const cv::Mat& image, const std::vector
 //! Makes the folder and its parents; throws Failure if it cannot.
 void makeFolder(const std::string& path);
 
+/* What a tool will write, looked at before any work is done. */
+enum OutputKind {
+    OUTPUT_TEXT,            //!< any name
+    OUTPUT_CALIBRATION,     //!< .yml, .yaml, .xml or .json
+    OUTPUT_PICTURE,         //!< what cv::imwrite knows
+    OUTPUT_SHARED,          //!< any name; read and written anew, by several runs in turn
+    OUTPUT_IN_FOLDER        //!< in a folder that the tool makes when there is something to write
+};
+
+struct Output
+{
+    std::string option;     //!< that names it, for the text: --out
+    std::string path;       //!< empty: it is not asked for
+    OutputKind kind;
+};
+
+/** Throws Failure if an output is an input (however both are written: links, ./ and ..), two outputs are one file, an
+extension does not tell a format that can be written, a file's folder is absent or may not be written to, or another run is about to
+write the same file: until the process ends, no other takes it.
+@param inputs files and globs that the tool reads; empty ones, and those that match nothing, are passed over. */
+void checkOutputs(const std::vector<Output>& outputs, const std::vector<std::string>& inputs);
+
 } // namespace tools
 
 #endif // REFRACT_TOOLS_FILE_OUTPUT_HPP

@@ -4,7 +4,7 @@
 #include "console/images.hpp"
 #include "console/failure.hpp"
 #include "console/numbers.hpp"
-#include "console/utf8.hpp"
+#include "console/table.hpp"
 #include <glob.h>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "console/progress.hpp"
-#include "console/colour.hpp"
+#include "console/table.hpp"
 
 #include <opencv2/core/utility.hpp>
 #include <unistd.h>

@@ -4,13 +4,81 @@
 #include "console/table.hpp"
 #include "console/numbers.hpp"
 #include <sys/stat.h>
-#include <unistd.h>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <iostream>
 #include <ostream>
 #include <sstream>
+#include <unistd.h>
 
 namespace tools {
+
+namespace {
+
+//! Bytes of the character that begins there; 0: none does (RFC 3629).
+size_t lengthOfCharacter(const std::string& text, size_t at)
+{
+    const unsigned char first = (unsigned char)text[at];
+    const size_t length = first < 0x80 ? 1 : first >= 0xC2 && first < 0xE0 ? 2 : (first & 0xF0) == 0xE0 ? 3
+        : first >= 0xF0 && first < 0xF5 ? 4 : 0;
+    if (length == 0 || at + length > text.size())
+        return 0;
+    uint32_t code = length == 1 ? first : first & (0x7F >> length);
+    for (size_t i = 1; i < length; i++)
+    {
+        const unsigned char next = (unsigned char)text[at + i];
+        if ((next & 0xC0) != 0x80)
+            return 0;
+        code = code << 6 | (next & 0x3F);
+    }
+    const bool isLong = (length == 3 && code < 0x800) || (length == 4 && code < 0x10000);
+    return isLong || code > 0x10FFFF || (code >= 0xD800 && code < 0xE000) ? 0 : length;
+}
+
+} // namespace
+
+std::string inLowerCase(std::string text)
+{
+    std::transform(text.begin(), text.end(), text.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c; });
+    return text;
+}
+
+bool isUtf8(const std::string& text)
+{
+    for (size_t i = 0, length = 0; i < text.size(); i += length)
+        if ((length = lengthOfCharacter(text, i)) == 0)
+            return false;
+    return true;
+}
+
+std::string toUtf8(const std::string& text)
+{
+    std::string result;
+    for (size_t i = 0; i < text.size(); )
+    {
+        const size_t length = lengthOfCharacter(text, i);
+        result += length ? text.substr(i, length) : "\xEF\xBF\xBD";
+        i += length ? length : 1;
+    }
+    return result;
+}
+
+bool takesEscapes()
+{
+    const char* const terminal = std::getenv("TERM");
+    return terminal && terminal != std::string("dumb");
+}
+
+std::string toned(const std::ostream& out, const std::string& text, Tone tone)
+{
+    const char* const none = std::getenv("NO_COLOR");
+    if (&out != &std::cout || !isatty(STDOUT_FILENO) || !takesEscapes() || (none && *none))
+        return text;
+    const char* const code = tone == Tone::GOOD ? "32" : tone == Tone::BAD ? "31" : "33";
+    return std::string("\033[1;") + code + "m" + text + "\033[0m";
+}
 
 namespace {
 

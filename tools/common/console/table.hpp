@@ -8,10 +8,29 @@
 #include <iosfwd>
 #include <istream>
 #include <limits>
+#include <ostream>
 #include <string>
 #include <vector>
 
 namespace tools {
+
+/* Pages, XML and JSON are UTF-8; what users give may be anything. */
+bool isUtf8(const std::string& text);
+
+//! The letters of ASCII; others stay as they are.
+std::string inLowerCase(std::string text);
+
+//! With a replacement character for each byte that is none of a character: for names of files, which may be any bytes.
+std::string toUtf8(const std::string& text);
+
+enum class Tone { GOOD, DOUBTFUL, BAD };
+
+//! TERM says that the terminal knows what escape sequences do.
+bool takesEscapes();
+
+/** The text in green, yellow or red if `out` is std::cout and that is a terminal; as it is in files and pipes, where NO_COLOR is set
+to anything (no-color.org), and on terminals without colours (TERM=dumb). */
+std::string toned(const std::ostream& out, const std::string& text, Tone tone);
 
 /** A plain text table: the first column flush left, the others flush right. Fits a terminal: where it is wider, the cells of the
 widest columns are broken between words. */

@@ -3,7 +3,6 @@
 
 #include "diagnose/causes.hpp"
 #include "measure/rig_vector.hpp"
-#include "diagnose/value_causes.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "console/table.hpp"
 #include <algorithm>

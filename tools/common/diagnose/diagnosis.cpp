@@ -6,10 +6,9 @@
 #include "console/failure.hpp"
 #include "console/numbers.hpp"
 #include "console/table.hpp"
-#include "diagnose/fit_quality.hpp"
+#include "diagnose/plain_fit.hpp"
 #include "diagnose/image_disagreement.hpp"
 #include "diagnose/image_mistakes.hpp"
-#include "diagnose/pair_maps.hpp"
 #include "diagnose/value_mistakes.hpp"
 #include <algorithm>
 #include <iterator>

@@ -4,10 +4,10 @@
 #ifndef REFRACT_TOOLS_DIAGNOSIS_HPP
 #define REFRACT_TOOLS_DIAGNOSIS_HPP
 
+#include "calibrate/fit.hpp"
 #include "diagnose/calibration_input.hpp"
 #include "diagnose/image_mixups.hpp"
 #include "diagnose/plain_fit.hpp"
-#include "calibrate/fit.hpp"
 
 /* A calibration that cannot be right: its residuals are larger than detection errors are, or all pairs contradict it. Then something
 in the input is wrong. Often a test finds it: the likely mistakes are undone one after the other, and the same images are fitted
@@ -45,6 +45,12 @@ void requireNoCause(const CalibrationInput& input, const MixUps& mixUps, const P
 
 //! Throws Failure: requireNoCause found nothing, and without outliers the images fit no better.
 [[noreturn]] void refuseUnexplained(const CalibrationInput& input, const PlainFit& plain);
+
+//! An error of a calibration, with the explanations.
+std::string explainError(const std::string& error, const CalibrationInput& input);
+
+//! The same of what fitImages threw, with what to do where the fit did not converge.
+std::string explainError(const cv::refract::CalibrationError& error, const CalibrationInput& input);
 
 } // namespace tools
 

@@ -1,10 +1,9 @@
 // This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
 // SPDX-License-Identifier: Apache-2.0
 
-#include "diagnose/explained_error.hpp"
-#include "console/table.hpp"
 #include "diagnose/diagnosis.hpp"
-#include "diagnose/fit_quality.hpp"
+#include "console/table.hpp"
+#include "diagnose/plain_fit.hpp"
 #include "diagnose/image_mistakes.hpp"
 #include "diagnose/value_mistakes.hpp"
 

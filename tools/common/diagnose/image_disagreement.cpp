@@ -4,7 +4,7 @@
 #include "diagnose/image_disagreement.hpp"
 #include "calibrate/pinhole_camera.hpp"
 #include "console/numbers.hpp"
-#include "diagnose/fit_quality.hpp"
+#include "diagnose/plain_fit.hpp"
 #include <opencv2/calib3d.hpp>
 #include <algorithm>
 #include <cmath>

@@ -4,8 +4,9 @@
 #ifndef REFRACT_TOOLS_IMAGE_DISAGREEMENT_HPP
 #define REFRACT_TOOLS_IMAGE_DISAGREEMENT_HPP
 
-#include "diagnose/calibration_input.hpp"
+#include "calibrate/rig_data.hpp"
 #include "calibrate/rigid_transform.hpp"
+#include "diagnose/calibration_input.hpp"
 #include <string>
 #include <unordered_map>
 
@@ -68,6 +69,18 @@ std::vector<int> allCameras(const RigData& data);
 
 //! Disagreements::camerasApart of these images.
 double camerasApart(const RigData& data, const RigOptions& options);
+
+/* Pairs of images against the map of the direct image on that through the window, which a window nearly is: a homography. */
+
+//! How far pairs are from one map of the direct image on that through the window, of the worst camera. A window is such a map, nearly.
+double pairsFromOneMap(const RigData& data);
+
+//! Views of which the pair of a camera is off the map that most of its pairs are on; empty: none, or no map is that of most.
+std::vector<int> pairsOffMap(const RigData& data, int camera);
+
+/** Views whose pairs of a camera are on two maps, as of two cameras, whatever their names are: those of either; empty: one map is as
+good, or two are not enough. */
+std::vector<std::vector<int>> pairsOfTwoMaps(const RigData& data, int camera);
 
 } // namespace tools
 

@@ -4,10 +4,9 @@
 #include "diagnose/image_mistakes.hpp"
 #include "console/numbers.hpp"
 #include "console/table.hpp"
-#include "diagnose/fit_quality.hpp"
-#include "diagnose/image_changes.hpp"
+#include "diagnose/plain_fit.hpp"
+#include "diagnose/calibration_input.hpp"
 #include "diagnose/image_disagreement.hpp"
-#include "diagnose/pair_maps.hpp"
 #include <opencv2/calib3d.hpp>
 #include <algorithm>
 #include <cctype>

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "diagnose/image_mixups.hpp"
-#include "diagnose/image_changes.hpp"
-#include "diagnose/fit_quality.hpp"
+#include "diagnose/calibration_input.hpp"
+#include "diagnose/plain_fit.hpp"
 #include "diagnose/image_disagreement.hpp"
 #include "console/failure.hpp"
 #include "console/numbers.hpp"

@@ -1,7 +1,6 @@
 // This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
 // SPDX-License-Identifier: Apache-2.0
 
-#include "diagnose/pair_maps.hpp"
 #include "diagnose/image_disagreement.hpp"
 #include "console/numbers.hpp"
 #include <opencv2/calib3d.hpp>

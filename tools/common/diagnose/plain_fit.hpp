@@ -7,11 +7,28 @@
 #include "calibrate/fit.hpp"
 #include "calibrate/starting_model.hpp"
 #include "diagnose/calibration_input.hpp"
-#include "diagnose/fit_quality.hpp"
 #include "diagnose/hypothesis_tests.hpp"
+#include <limits>
 #include <optional>
 
 namespace tools {
+
+/* How well a calibration fits its images. If it does not, something in the input is wrong. */
+
+const double NO_FIT = std::numeric_limits<double>::infinity();
+
+/** The median length of the residuals, px, which outliers hardly change: that of the worst camera, over the views with a glass image,
+as direct images alone always fit. */
+double medianCornerError(const RigData& data, const std::vector<Residual>& residuals);
+
+//! The largest median error of correct input, px.
+double largestSoundError(const RigData& data);
+
+//! All values of windows and boards as exact; faces are parallel then, and panes flat.
+RigOptions exactly(RigOptions options);
+
+//! medianCornerError of a fit to all the data, NO_FIT if there is none soon. @param result gets that fit
+double medianErrorOfFit(const RigData& data, const RigOptions& options, Fit* result = nullptr);
 
 /* A calibration before it is fitted: where causes are looked for if the library has no fit of the images, as pairs that contradict each
 other by pixels. A fit that was forced through these ends far from the truth; the start does not know of the contradiction. */

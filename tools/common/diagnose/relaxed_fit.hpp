@@ -4,7 +4,9 @@
 #ifndef REFRACT_TOOLS_RELAXED_FIT_HPP
 #define REFRACT_TOOLS_RELAXED_FIT_HPP
 
-#include "diagnose/relaxed_problem.hpp"
+#include "calibrate/fit.hpp"
+#include "measure/eigen_matrix.hpp"
+#include "measure/view_observations.hpp"
 #include <cmath>
 
 /* A calibration fitted again to the same images, with more free than it had. Gauss-Newton from where the calibration is, which is near:
@@ -12,6 +14,37 @@ tens of milliseconds, where the library's fit, which searches and tests, takes s
 different between the direct images and those through the windows. All that the calibration knew (priors) it still knows, weighted by a
 noise that is given: a noise that a wrong value has made large would make the prior of that value as weak. */
 namespace tools {
+
+//! What a calibration estimated and what it knew, on the numbers of its rig as toVector() has them.
+struct RelaxedProblem
+{
+    //! Of a distance that the calibration held: where it is among the numbers and in `free`, and how large it may be.
+    struct Bound
+    {
+        int number, column;
+        double most;
+    };
+
+    RelaxedProblem(const RigData& data, const Fit& fit, bool posesKnown);
+    //! What is known adds this to chi^2.
+    double priorOf(const VectorXd& numbers) const;
+
+    RigModel rig;                               //!< where a fit begins, with its poses
+    std::vector<ViewObservations> views;
+    MatrixXd free;                              //!< columns: changes of the numbers that the calibration estimated
+    MatrixXd information;                       //!< of priors
+    VectorXd known;                             //!< their means
+    std::vector<MatrixXd> poseInformation;      //!< of each view; empty: nothing is known; infinite: exact
+    std::vector<VectorXd> knownPoses;
+    std::vector<Bound> bounds;
+
+private:
+    void addKnownCamera(int c);
+    void freeDistance(const Fit& fit, int c);
+};
+
+//! rvec, then tvec.
+VectorXd toVector(const cv::Vec3d& rvec, const cv::Vec3d& tvec);
 
 //! A number that is freed: it moves some numbers of the rig (as toVector has them) together.
 struct Shift

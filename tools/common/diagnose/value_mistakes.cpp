@@ -8,7 +8,7 @@
 #include "calibrate/window_face.hpp"
 #include "console/numbers.hpp"
 #include "console/table.hpp"
-#include "diagnose/fit_quality.hpp"
+#include "diagnose/plain_fit.hpp"
 #include <algorithm>
 #include <numeric>
 

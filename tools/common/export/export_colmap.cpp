@@ -1,10 +1,11 @@
 // This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
 // SPDX-License-Identifier: Apache-2.0
 
-#include "export/colmap_port.hpp"
+#include "calibrate/window_face.hpp"
+#include "console/csv.hpp"
+#include "console/failure.hpp"
 #include "export/export_files.hpp"
 #include "formats/colmap_cameras.hpp"
-
 #include <opencv2/calib3d.hpp>
 #include <cmath>
 #include <map>
@@ -12,6 +13,57 @@
 namespace tools {
 
 using cv::Point2d;
+using cv::refract::GlassWindow;
+using cv::refract::RefractiveCamera;
+
+std::vector<MeasuredPoint> readMeasuredPoints(const std::string& path, int cameras)
+{
+    std::vector<std::string> required = {"image"};
+    for (int c = 1; c <= cameras; c++)
+        for (const char* const coordinate : {"u", "v"})
+            required.push_back(coordinate + std::to_string(c));
+    required.insert(required.end(), {"x", "y", "z"});
+    const CsvTable table(path, required, "what refract_measure writes for these cameras");
+    std::vector<MeasuredPoint> points;
+    for (const CsvTable::Row& row : table.rows())
+    {
+        const auto numberOf = [&](const std::string& name) { return table.numberOrNone(row, name); };
+        MeasuredPoint point = {table.text(row, "image"), {}, {numberOf("x"), numberOf("y"), numberOf("z")}};
+        for (int c = 1; c <= cameras; c++)
+            point.pixels.emplace_back(numberOf("u" + std::to_string(c)), numberOf("v" + std::to_string(c)));
+        if (std::isfinite(point.X.x + point.X.y + point.X.z))
+            points.push_back(point);
+    }
+    return points;
+}
+
+ColmapPort colmapPortOf(const GlassWindow& window, const std::string& name, const std::string& program)
+{
+    if (!refracts(window))
+        return {};
+    const bool isDome = window.shape == cv::refract::WINDOW_DOME, isFlat = window.shape == cv::refract::WINDOW_FLAT;
+    if ((!isDome && !isFlat) || window.thickness.size() > 1)
+        throw Failure(name + " looks through a window that " + program + " has none like: it has flat ones and domes, of one layer");
+    for (const cv::Vec2d& wedge : window.wedge)
+        if (wedge != cv::Vec2d())
+            throw Failure(name + " looks through a window with a wedge, and " + program + " has none: calibrate with --wedge-std=0");
+    const bool isBare = window.thickness.empty();       // a surface is a port of no thickness, whose index does not matter
+    const cv::Vec3d where = isDome ? window.center : window.normal;
+    return {isDome ? "DOMEPORT" : "FLATPORT",
+            {where[0], where[1], where[2], isDome ? window.radius : window.distance, isBare ? 0. : window.thickness[0],
+             window.innerIndex, isBare ? window.outerIndex : window.index[0], window.outerIndex}};
+}
+
+ColmapCamera exactColmapCamera(const RefractiveCamera& camera, uint32_t id, const std::string& name, const std::string& program)
+{
+    const size_t MOST = 4 + 8;          // focal lengths, centre, coefficients
+    const bool isFisheye = camera.lensModel() == "fisheye";
+    if ((!isFisheye && (camera.lensModel() != "opencv" || camera.lensParameters().total() > MOST))
+        || camera.cameraMatrix().at<double>(0, 1) != 0.)
+        throw Failure(name + " has a lens that " + program + " has none like: it has OpenCV's with up to eight coefficients, and "
+                      "cv::fisheye's without skew");
+    return colmapCameraOf(camera, id);
+}
 
 namespace {
 
@@ -172,6 +224,37 @@ std::vector<ExportFile> underwaterColmapFiles(const Calibration& calibration, co
         cameras += cameraLine(exactColmapCamera(*camera, (uint32_t)c + 1, name, program), colmapPortOf(camera->window(), name, program));
     }
     return filesOf("# of " + source + (rig.unit.empty() ? "" : ", lengths in " + rig.unit) + "\n", cameras, rig, points, extension);
+}
+
+/* Calibmar knows windows: what it can be told is exact. Its lenses and ports are COLMAP's, whose pixel (0, 0) is a corner. */
+
+namespace {
+
+std::string listOf(const std::vector<double>& numbers)
+{
+    std::string text;
+    for (double number : numbers)
+        text += cv::format("%s%.17g", text.empty() ? "" : ", ", number);
+    return "[" + text + "]";
+}
+
+} // namespace
+
+std::vector<ExportFile> calibmarFiles(const Calibration& calibration, const std::string& source)
+{
+    std::vector<ExportFile> files;
+    for (size_t c = 0; c < calibration.cameras.size(); c++)
+    {
+        const cv::refract::RefractiveCamera& camera = *calibration.cameras[c].camera;
+        const std::string name = cv::format("camera%zu", c + 1);
+        const ColmapCamera lens = exactColmapCamera(camera, 1, name, "Calibmar");
+        const ColmapPort port = colmapPortOf(camera.window(), name, "Calibmar");
+        files.push_back({name + ".yaml", "# of " + source + (calibration.unit.empty() ? "" : ", lengths in " + calibration.unit) + "\n"
+            + "model: " + lens.model + "\nparameters: " + listOf(lens.parameters) + "\n"
+            + "non_svp_model: " + (port.model.empty() ? "NONE" : port.model) + "\nnon_svp_parameters: " + listOf(port.parameters) + "\n"
+            + cv::format("width: %d\nheight: %d\n", camera.imageSize().width, camera.imageSize().height)});
+    }
+    return files;
 }
 
 } // namespace tools

@@ -5,11 +5,41 @@
 #define REFRACT_TOOLS_EXPORT_FILES_HPP
 
 #include "calibrate/calib_file.hpp"
+#include "colmap/colmap_model.hpp"
 #include "export/central_camera.hpp"
-#include "export/measured_points.hpp"
+#include <opencv2/core.hpp>
+#include <opencv2/refract.hpp>
+#include <string>
+#include <vector>
 
 /* Files for programs that have no model of a window, each states its error, and for those that have one. */
 namespace tools {
+
+//! A line of what refract_measure wrote.
+struct MeasuredPoint
+{
+    std::string image;                      //!< stem: the view
+    std::vector<cv::Point2d> pixels;        //!< of each camera, raw; NaN: not seen
+    cv::Point3d X;                          //!< frame of camera 1
+};
+
+//! Points that have a place. Throws Failure that names file and line.
+std::vector<MeasuredPoint> readMeasuredPoints(const std::string& path, int cameras);
+
+/* A camera behind a window as Calibmar and COLMAP's fork for cameras under water have it, exactly; makePort() reads it again. */
+
+//! FLATPORT (normal, distance) or DOMEPORT (centre, radius), then thickness and the indices inside, of the port, outside.
+struct ColmapPort
+{
+    std::string model;                  //!< empty: there is no window
+    std::vector<double> parameters;
+};
+
+/** Throws Failure for a window, or a lens, that they have none like.
+@param name of the camera @param program that is told */
+ColmapPort colmapPortOf(const cv::refract::GlassWindow& window, const std::string& name, const std::string& program);
+ColmapCamera exactColmapCamera(const cv::refract::RefractiveCamera& camera, uint32_t id, const std::string& name,
+                               const std::string& program);
 
 //! A file of a folder, and its text.
 struct ExportFile

@@ -5,7 +5,7 @@
 #define REFRACT_TOOLS_CHECK_HISTORY_HPP
 
 #include "assess/rig_check.hpp"
-#include "calibrate/calibration_images.hpp"
+#include "calibrate/provenance.hpp"
 #include "console/json.hpp"
 #include "console/times.hpp"
 #include <string>

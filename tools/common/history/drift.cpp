@@ -4,7 +4,7 @@
 #include "history/drift.hpp"
 #include "console/table.hpp"
 #include "math/dense.hpp"
-#include "measure/vector_length.hpp"
+#include "measure/eigen_matrix.hpp"
 #include <algorithm>
 #include <limits>
 

@@ -1,7 +1,7 @@
 // This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
 // SPDX-License-Identifier: Apache-2.0
 
-#include "history/history_page.hpp"
+#include "history/drift.hpp"
 #include "history/history_template.hpp"
 #include "console/table.hpp"
 #include "report/page_template.hpp"

@@ -4,7 +4,6 @@
 #include "laser/sheet_fit.hpp"
 #include "console/failure.hpp"
 #include "console/numbers.hpp"
-#include "laser/sheet_line.hpp"
 #include "math/dense.hpp"
 #include <algorithm>
 #include <cmath>

@@ -1,10 +1,10 @@
 // This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
 // SPDX-License-Identifier: Apache-2.0
 
-#include "laser/sheet_line.hpp"
+#include "laser/sheet_fit.hpp"
 #include "console/numbers.hpp"
 #include "math/dense.hpp"
-#include "measure/view_derivatives.hpp"
+#include "measure/rig_vector.hpp"
 #include <algorithm>
 #include <cmath>
 

@@ -4,7 +4,8 @@
 #ifndef REFRACT_TOOLS_MATCH_NOISE_HPP
 #define REFRACT_TOOLS_MATCH_NOISE_HPP
 
-#include "match/match_choice.hpp"
+#include "bundle/matches.hpp"
+#include "calibrate/rig_model.hpp"
 
 /* How well features are placed. A large blob is placed less well than a small one, and one that looks different in two images, as a surface
 seen from two sides does, less well than one that looks the same:
@@ -13,6 +14,29 @@ seen from two sides does, less well than one that looks the same:
 
 The three numbers come from the residuals of the matches themselves, by maximum likelihood: they differ with texture, blur and light. */
 namespace tools {
+
+/* Matches, and which of them to take. */
+
+struct ScaledMatches
+{
+    Matches matches;
+    std::vector<std::vector<double>> scales;        //!< of the features, per camera, per point
+    //! Per point: distance of its features' descriptors over the usual one; empty: all are alike.
+    std::vector<double> unlike = {};
+
+    int size() const { return (int)matches.names.size(); }
+    void add(const ScaledMatches& others);
+    ScaledMatches only(const std::vector<int>& points) const;
+};
+
+//! Which matches are at the same place at another moment, too: these stand still, or are reflections.
+std::vector<uchar> recurring(const ScaledMatches& all);
+
+/** So many at most, spread over the image and over depth, as a corner of an image knows more than its middle; in each cell the smallest
+features first, as they are placed best. What was taken already, be it at another moment, is not taken again: a detail of a scene that
+stands still tells no more the second time.
+@param rig that measures the depths */
+std::vector<int> spreadChoice(const ScaledMatches& all, const RigModel& rig, int count);
 
 struct MatchResidual;
 

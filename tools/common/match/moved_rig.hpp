@@ -4,7 +4,8 @@
 #ifndef REFRACT_TOOLS_MOVED_RIG_HPP
 #define REFRACT_TOOLS_MOVED_RIG_HPP
 
-#include "assess/check_input.hpp"
+#include "assess/check_problem.hpp"
+#include "match/match_noise.hpp"
 
 /* What may have become of a rig since its calibration, and how far from their curves matches then are. */
 namespace tools {
@@ -27,6 +28,27 @@ cv::Mat covarianceOfChanged(const CheckInput& input, double depth, double share)
 /** How far a match of two cameras may be from its epipolar curve, px: three standard deviations of what the calibration does not know,
 and the largest turn by so many degrees. @param depth z of the scene in the frame of camera 1 */
 double searchWidth(const CheckInput& input, int first, int second, const cv::Vec2d& depth, double degrees);
+
+/* What errs together. A thing that moved between the images of a moment, or a reflection, may miss its curves by so little that no match of
+it is a wrong one by itself. But all of it misses to the same side, where noise does not: of n matches the sum of the misses e, in standard
+deviations, has
+
+    |e_1 + ... + e_n|^2 / n ~ chi^2
+
+of as many degrees of freedom as one match has. So n matches show together what is sqrt(n) times less than what one shows. */
+
+/** Of each match, the group in which some may err together: those of one moment; and those that are at the same place at several moments,
+as a reflection is, and dirt on a window. */
+std::vector<int> groupsOf(const ScaledMatches& all);
+
+/** Where most matches of a part of an image miss, at all moments together, those that do not are near their curves by chance. Nothing else
+tells the rig there, so that it would follow them. @param candidates each is near its curve */
+std::vector<uchar> inContradictedParts(const ScaledMatches& scaled, const RigModel& rig, const std::vector<int>& candidates);
+
+/** These, and which matches are of a part of their group, neighbours in an image, that errs together.
+@param residuals of the same matches */
+std::vector<uchar> inMovedParts(const ScaledMatches& scaled, const std::vector<int>& groups, const RigModel& rig,
+                                const std::vector<MatchResidual>& residuals, const MatchNoise& noise, const std::vector<int>& candidates);
 
 } // namespace tools
 

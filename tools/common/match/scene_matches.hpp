@@ -4,12 +4,14 @@
 #ifndef REFRACT_TOOLS_SCENE_MATCHES_HPP
 #define REFRACT_TOOLS_SCENE_MATCHES_HPP
 
-#include "assess/check_input.hpp"
+#include "assess/check_problem.hpp"
+#include "bundle/matches.hpp"
+#include "calibrate/rig_model.hpp"
 #include "console/failure.hpp"
 #include "console/frames.hpp"
-#include "match/match_choice.hpp"
 #include "match/match_noise.hpp"
 #include "match/partner_search.hpp"
+#include "measure/view_observations.hpp"
 
 /* From images of a scene to matches for refract_bundle and refract_check. */
 namespace tools {
@@ -90,6 +92,9 @@ std::vector<cv::Mat> imagesOfMoment(const Calibration& calibration, std::vector<
 /** The baseline: RMS of the residuals of the same matches, px, where windows are ignored and the cameras' places fitted to the matches.
 NaN: there is no such fit. */
 double residualWithoutWindows(const Calibration& calibration, const ScaledMatches& good);
+
+//! Matches as a check of a rig takes them, with points where the rig as calibrated sees them; without matches of which it sees none.
+ViewObservations observationsOf(const RigModel& rig, const Matches& matches);
 
 } // namespace tools
 

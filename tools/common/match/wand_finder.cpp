@@ -1,7 +1,7 @@
 // This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
 // SPDX-License-Identifier: Apache-2.0
 
-#include "match/wand_finder.hpp"
+#include "match/wand_matches.hpp"
 #include <algorithm>
 #include <cmath>
 #include <limits>

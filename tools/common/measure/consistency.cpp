@@ -6,7 +6,7 @@
 #include "console/numbers.hpp"
 #include "math/dense.hpp"
 #include "measure/eigen_matrix.hpp"
-#include "measure/view_derivatives.hpp"
+#include "measure/rig_vector.hpp"
 #include <opencv2/calib3d.hpp>
 #include <algorithm>
 #include <cmath>

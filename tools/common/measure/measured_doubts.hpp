@@ -12,6 +12,15 @@
 /* What speaks against measured points, in sentences; empty: nothing does. */
 namespace tools {
 
+/* Pixels that no image has. The lens model answers for them too, somewhere, with a +- as good as any other. */
+
+/** Points with a pixel more than a pixel outside of its image become NaN with the status OUTSIDE_IMAGE. To be called before their
+consistency is checked, which they would distort. Cameras whose image size is not known are left out. */
+void forgetOutside(const Calibration& calibration, Measurement& measurement);
+
+//! What to say of them, with the first one by its name; empty: there are none.
+std::string outsideIn(const Calibration& calibration, const Measurement& measurement, const std::vector<std::string>& ids);
+
 /* Do lengths that were measured agree with those of a target? Their mean ratio is known far better than any of them, by the noise of all
 pixels and the calibration's covariance, in which their errors are common. */
 

@@ -5,7 +5,7 @@
 #include "calibrate/parameter_columns.hpp"
 #include "math/dense.hpp"
 #include "measure/measurement.hpp"
-#include "measure/view_derivatives.hpp"
+#include "measure/rig_vector.hpp"
 #include <algorithm>
 #include <limits>
 

@@ -4,10 +4,14 @@
 #include "measure/rig_vector.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "calibrate/window_face.hpp"
+#include "measure/eigen_matrix.hpp"
+#include <opencv2/calib3d.hpp>
 #include <algorithm>
 
 using namespace cv;
 using namespace cv::refract;
+
+using Eigen::VectorXd;
 
 namespace tools {
 
@@ -58,6 +62,54 @@ VectorXd windowNumbersOf(const RigModel& rig, int owner, int camera, const Vecto
     VectorXd window = VectorXd::Zero(at.end);
     putWindow(seenFrom(shared, there), at, window.data());
     return window.tail(at.end - at.window);
+}
+
+/** Pose in a camera in one of its images, and its derivatives (6x6) by the pose in camera 1 and by the rotation vectors and
+translations that lie between: the targets' motion, the camera's place. */
+struct PoseInImage
+{
+    PoseInImage(const RigModel& rig, const ImageOfView& image, const Vec3d& rvec1, const Vec3d& tvec1)
+        : rvec(rvec1), tvec(tvec1), byPose(MatrixXd::Identity(6, 6)), byMotion(MatrixXd::Zero(6, 6)), byRig(MatrixXd::Zero(6, 6))
+    {
+        if (image.glass && !rig.targetCovariance.empty())
+            follow(rig.targetMotion, byMotion);
+        if (image.camera > 0)
+            byMotion = product(follow(rig.extrinsics[image.camera], byRig), byMotion);
+    }
+    Vec3d rvec, tvec;
+    MatrixXd byPose, byMotion, byRig;
+
+private:
+    //! @param byTransform of the new pose @return its derivatives by the one before
+    MatrixXd follow(const RigidTransform& transform, MatrixXd& byTransform)
+    {
+        Mat r, t, rr1, rt1, rr2, rt2, tr1, tt1, tr2, tt2;
+        composeRT(rvec, tvec, rotationVector(transform.R), transform.T, r, t, rr1, rt1, rr2, rt2, tr1, tt1, tr2, tt2);
+        rvec = Vec3d(r.ptr<double>());
+        tvec = Vec3d(t.ptr<double>());
+        MatrixXd byBefore(6, 6);
+        byBefore << toEigen(rr1), toEigen(rt1), toEigen(tr1), toEigen(tt1);
+        byTransform << toEigen(rr2), toEigen(rt2), toEigen(tr2), toEigen(tt2);
+        byPose = product(byBefore, byPose);
+        return byBefore;
+    }
+};
+
+//! Rows u, v of each point by the relative scale of the target, from those by the translation in the camera.
+VectorXd byScale(const MatrixXd& byTranslation, const std::vector<Point3d>& object, const Matx33d& R)
+{
+    VectorXd result(byTranslation.rows());
+    for (size_t i = 0; i < object.size(); i++)
+    {
+        const Vec3d X = R*Vec3d(object[i]);
+        result.segment<2>(2*i) = byTranslation.middleRows<2>(2*i)*Eigen::Map<const Eigen::Vector3d>(X.val);
+    }
+    return result;
+}
+
+Ptr<RefractiveCamera> cameraOf(const RigModel& rig, int camera, bool glass)
+{
+    return glass ? rig.cameras[camera] : copyWithWindow(rig.cameras[camera], GlassWindow());
 }
 
 } // namespace
@@ -160,6 +212,117 @@ MatrixXd consistentChanges(const RigModel& rig)
         }
     }
     return changes;
+}
+
+PointDerivatives differentiatePoints(const Ptr<RefractiveCamera>& camera, const std::vector<Point3d>& points,
+                                     const Vec3d& rvec, const Vec3d& tvec)
+{
+    Mat ignored, jacobian;
+    refractiveProjectPoints(points, rvec, tvec, camera, ignored, noArray(), jacobian);
+    const Eigen::MatrixXd J = toEigen(jacobian);
+    return {J.leftCols(6), J.rightCols(J.cols() - 6)};
+}
+
+ImageDerivatives differentiateImage(const RigModel& rig, const std::vector<Point3d>& objectPoints, const Vec3d& rvec, const Vec3d& tvec,
+                                    const ImageOfView& image)
+{
+    const bool hasTargetErrors = !rig.targetCovariance.empty();
+    const ParameterColumns at = columnsOf(rig, image.camera);
+    const int own = image.glass ? at.end - at.lens : at.lensCount;
+    ImageDerivatives result;
+    const auto addColumns = [&](int first, int count) {
+        for (int i = 0; i < count; i++)
+            result.columns.push_back(first + i); };
+    addColumns(at.lens, own);
+    if (image.camera > 0)
+        addColumns(extrinsicsColumn(rig, image.camera), 6);
+    if (hasTargetErrors)
+        addColumns(columnCount(rig), TARGET_ERRORS);
+    const PoseInImage pose(rig, image, rvec, tvec);
+    std::vector<Point3d> given;
+    for (int i : image.points)
+        given.push_back(objectPoints[i]);
+    std::vector<Point2d> pixels;
+    Mat jacobian;
+    refractiveProjectPoints(pointsOfTarget(rig, given), pose.rvec, pose.tvec, cameraOf(rig, image.camera, image.glass), pixels, noArray(),
+                            jacobian);
+    const MatrixXd J = toEigen(jacobian);
+    const Eigen::Index n = J.rows();
+    result.predicted.resize(n);
+    for (size_t i = 0; i < pixels.size(); i++)
+        result.predicted.segment<2>(2*i) << pixels[i].x, pixels[i].y;
+    result.byPose = product(J.leftCols(6), pose.byPose);
+    result.byParameters.resize(n, result.columns.size());
+    result.byParameters.leftCols(own) = J.middleCols(6, own);
+    if (image.camera > 0)
+        result.byParameters.middleCols(own, 6) = product(J.leftCols(6), pose.byRig);
+    if (hasTargetErrors)
+    {
+        result.byParameters.col(result.byParameters.cols() - TARGET_ERRORS) = byScale(J.middleCols(3, 3), given, rotationMatrix(pose.rvec));
+        result.byParameters.rightCols(6) = product(J.leftCols(6), pose.byMotion);
+    }
+    return result;
+}
+
+ViewDerivatives differentiateView(const RigModel& rig, const std::vector<Point3d>& objectPoints, const Vec3d& rvec,
+                                  const Vec3d& tvec, const std::vector<ImageOfView>& images)
+{
+    int rows = 0;
+    for (const ImageOfView& image : images)
+        rows += 2*(int)image.points.size();
+    ViewDerivatives view;
+    view.predicted.resize(rows);
+    view.byPose.resize(rows, 6);
+    view.byParameters = MatrixXd::Zero(rows, columnCount(rig) + (rig.targetCovariance.empty() ? 0 : TARGET_ERRORS));
+    Eigen::Index row = 0;
+    for (const ImageOfView& image : images)
+    {
+        const ImageDerivatives own = differentiateImage(rig, objectPoints, rvec, tvec, image);
+        const Eigen::Index n = own.predicted.size();
+        view.predicted.segment(row, n) = own.predicted;
+        view.byPose.middleRows(row, n) = own.byPose;
+        for (size_t i = 0; i < own.columns.size(); i++)
+            view.byParameters.block(row, own.columns[i], n, 1) = own.byParameters.col(i);
+        row += n;
+    }
+    return view;
+}
+
+ImageOfView pointsInImage(const RigModel& rig, const std::vector<Point3d>& objectPoints, const Vec3d& rvec, const Vec3d& tvec,
+                          int camera, bool glass)
+{
+    Vec3d rvecC = rvec, tvecC = tvec;
+    poseInImage(rig, camera, glass, rvecC, tvecC);
+    const Rect2d image(Point2d(-0.5, -0.5), Size2d(rig.cameras[camera]->imageSize()));
+    std::vector<Point2d> pixels;
+    refractiveProjectPoints(pointsOfTarget(rig, objectPoints), rvecC, tvecC, cameraOf(rig, camera, glass), pixels);
+    ImageOfView result{camera, glass, {}};
+    for (size_t i = 0; i < pixels.size(); i++)
+        if (image.contains(pixels[i]))          // false for NaN
+            result.points.push_back((int)i);
+    return result;
+}
+
+//! Columns of one length: rotations and translations are in different units.
+static MatrixXd scaled(const MatrixXd& byPose)
+{
+    const Eigen::RowVectorXd scale = byPose.colwise().norm().cwiseMax(1e-300);
+    return byPose.array().rowwise()/scale.array();
+}
+
+PoseNullSpace::PoseNullSpace(const MatrixXd& byPose) : qr_(scaled(byPose)), columns_(byPose.cols()) {}
+
+MatrixXd PoseNullSpace::operator()(const MatrixXd& rows) const
+{
+    return qr_.rotate(rows).bottomRows(rows.rows() - columns_);
+}
+
+MatrixXd covarianceWith(const MatrixXd& covariance, const MatrixXd& byParameters, double sigma)
+{
+    const MatrixXd CJt = timesTranspose(covariance, byParameters);
+    MatrixXd predicted = product(byParameters, CJt);
+    predicted.diagonal().array() += sigma*sigma;
+    return covariance - product(CJt, LDLT(predicted).solveTranspose(CJt));
 }
 
 } // namespace tools

@@ -4,8 +4,9 @@
 #ifndef REFRACT_TOOLS_VIEW_OBSERVATIONS_HPP
 #define REFRACT_TOOLS_VIEW_OBSERVATIONS_HPP
 
-#include "measure/view_derivatives.hpp"
 #include "calibrate/rig_data.hpp"
+#include "calibrate/rig_model.hpp"
+#include "measure/rig_vector.hpp"
 
 namespace tools {
 
@@ -66,6 +67,16 @@ ViewObservations observationsOf(const RigModel& rig, const View& view);
 
 //! Gauss-Newton on the pose. @return the derivatives there
 ViewDerivatives refinePose(const RigModel& rig, ViewObservations& observed);
+
+//! The noise of a pixel coordinate.
+struct ImageNoise
+{
+    double sigma, dof;          //!< dof 0: nothing tells
+};
+
+/** What the images themselves tell of their noise, whatever the calibration is worth: each image has a pose of its own, and a
+wrong lens, window or target leaves residuals that are smooth over the image, so that a cubic polynomial takes them away. */
+ImageNoise imageNoise(const RigModel& rig, const std::vector<View>& views);
 
 } // namespace tools
 

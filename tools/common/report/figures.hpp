@@ -4,7 +4,8 @@
 #ifndef REFRACT_TOOLS_FIGURES_HPP
 #define REFRACT_TOOLS_FIGURES_HPP
 
-#include "assess/assessment.hpp"
+#include "assess/findings.hpp"
+#include "assess/rig_calibration.hpp"
 #include "report/page_template.hpp"
 
 /* The report's pictures, one function each, as SVG text. A picture whose scale needs words returns them beside it. */
@@ -45,6 +46,30 @@ PageValues errorOverRange(const RigCalibration& calibration, const Assessment& a
 
 //! Over the image, at each range.
 void addErrorMaps(PageList& list, const RigCalibration& calibration, const Assessment& assessment, Progress& progress);
+
+/* Small copies of the images with the detected points, as some mistakes are seen at once in an image and in no number. */
+
+//! A small JPEG of an image with dots on its points, for the src of an <img>.
+struct Thumbnail
+{
+    std::string uri;            //!< "data:image/jpeg;base64,..."
+    std::string caption;
+    bool suspect;               //!< no target found, or points left out
+};
+
+//! Colours of points in CSS, and how far these lie from where the calibration puts them, in words.
+struct PhotoScale
+{
+    std::string colour, name;
+};
+std::vector<PhotoScale> photoScale(const RigCalibration& calibration);
+
+/** The images for the page, in their order: all of them, or of very many those to look at first, which are
+images without target or with points left out, then those whose points lie farthest off. */
+std::vector<Photo> photosToShow(const RigCalibration& calibration);
+
+//! Throws Failure if the image cannot be read any more.
+Thumbnail makeThumbnail(const RigCalibration& calibration, const Photo& photo);
 
 } // namespace tools
 

@@ -1,7 +1,7 @@
 // This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
 // SPDX-License-Identifier: Apache-2.0
 
-#include "report/given_values.hpp"
+#include "report/summary.hpp"
 #include "calibrate/units.hpp"
 #include "calibrate/window_face.hpp"
 #include "console/table.hpp"

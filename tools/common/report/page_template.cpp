@@ -3,7 +3,7 @@
 
 #include "report/page_template.hpp"
 #include "console/failure.hpp"
-#include "console/utf8.hpp"
+#include "console/table.hpp"
 
 #include <kainjow/mustache.hpp>
 

@@ -1,19 +1,16 @@
 // This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
 // SPDX-License-Identifier: Apache-2.0
 
-#include "report/report.hpp"
-#include "assess/next_step.hpp"
-#include "assess/round_window.hpp"
+#include "report/summary.hpp"
+#include "assess/advice.hpp"
+#include "assess/rig_calibration.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "calibrate/window_face.hpp"
 #include "console/numbers.hpp"
 #include "console/progress.hpp"
 #include "console/table.hpp"
 #include "report/figures.hpp"
-#include "report/given_values.hpp"
 #include "report/report_template.hpp"
-#include "report/summary.hpp"
-#include "report/thumbnails.hpp"
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>

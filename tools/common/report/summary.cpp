@@ -2,13 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "report/summary.hpp"
-#include "assess/round_window.hpp"
+#include "assess/rig_calibration.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "calibrate/units.hpp"
 #include "calibrate/window_face.hpp"
-#include "console/colour.hpp"
 #include "console/table.hpp"
-#include "report/given_values.hpp"
 #include <algorithm>
 #include <cmath>
 #include <functional>

@@ -32,8 +32,6 @@ std::string pointErrorNote(const RigCalibration& calibration, const Assessment& 
 //! Cells: to what the source is known, its effect, its share in per cent.
 std::vector<SummaryRow> budgetRows(const Assessment& assessment);
 
-//! Cells: points RMS, worst point, lengths in parts of a thousand.
-
 //! Cells: std of the normals, worst point, the calibration's part.
 std::vector<SummaryRow> adviceRows(const Advice& advice);
 
@@ -43,6 +41,26 @@ void printSummary(std::ostream& out, const RigCalibration& calibration, const As
 
 //! For the file.
 Calibration toFile(const RigCalibration& calibration, const std::string& command);
+
+//! All that the table and the report say, for machines; numbers that do not exist are null. Keys: doc/howto_calibrate.md.
+std::string summaryJson(const RigCalibration& calibration, const Assessment& assessment, const Findings& findings,
+                        const std::string& command);
+
+/** What was given and not left to the images alone: each value, how well it is known, and who said so. Cells: value, one standard
+deviation, source. */
+std::vector<SummaryRow> givenRows(const RigCalibration& calibration);
+
+//! One self-contained HTML page by which a technician can assess the calibration.
+std::string makeReport(const RigCalibration& calibration, const Assessment& assessment, const Findings& findings,
+                       const std::string& commandLine, bool quiet);
+
+/* A terminal shows them without scrolling, and a photograph of it can be read. */
+const size_t DIGEST_LINES = 10, DIGEST_COLUMNS = 80;
+
+/** The result in so many lines: the verdict and its reasons, the error of a measured point at three ranges, what to do next. What
+does not fit is counted, and the tables have it. @param report its file; empty: none */
+void printDigest(std::ostream& out, const RigCalibration& calibration, const Assessment& assessment, const Findings& findings,
+                 const std::string& report);
 
 } // namespace tools
 

@@ -1,15 +1,14 @@
 // This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
 // SPDX-License-Identifier: Apache-2.0
 
-#include "report/summary_json.hpp"
-#include "assess/next_step.hpp"
-#include "assess/round_window.hpp"
+#include "report/summary.hpp"
+#include "assess/advice.hpp"
+#include "assess/rig_calibration.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "calibrate/units.hpp"
 #include "calibrate/window_face.hpp"
 #include "console/json.hpp"
 #include "console/table.hpp"
-#include "report/given_values.hpp"
 #include <algorithm>
 #include <cmath>
 

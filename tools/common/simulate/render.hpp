@@ -5,10 +5,11 @@
 #define REFRACT_TOOLS_RENDER_HPP
 
 #include "calibrate/rigid_transform.hpp"
-#include "simulate/exposure.hpp"
 #include "simulate/light_source.hpp"
+#include "simulate/surface.hpp"
 #include "target/target.hpp"
 #include <opencv2/refract.hpp>
+#include <vector>
 
 namespace tools {
 
@@ -43,6 +44,17 @@ TrueLine trueLine(const LightSource& source, bool window, const TexturedScene& s
 
 //! On a target. @param pose in camera 1
 TrueLine trueLine(const LightSource& source, bool window, const Target& target, const BoardPose& pose, const Viewpoint& camera);
+
+/** z in the camera's frame of the first surface that each pixel's centre sees, float32; NaN where it sees none, or where the lens
+or the window has no ray. */
+cv::Mat depthOfScene(const TexturedScene& scene, const Viewpoint& view);
+
+/** The image, 8 bits, blue, green, red. Every sample, 2x2 in each pixel, has a ray of its own, followed through the lens and
+the window to the first surface. What it finds there: the surface's colour times the texture, in the light of a lamp that is far
+off, up and to the left of camera 1, and some light from everywhere. No shadows. Lit from the front, a white surface has the
+level `light`, without light `dark`. Lines and fringes of emitters are added to it; surfaces do throw shadows in their light. */
+cv::Mat renderScene(const TexturedScene& scene, const Viewpoint& view, const Exposure& exposure, uint64_t seed,
+                    const Illumination* light = nullptr);
 
 } // namespace tools
 

@@ -6,9 +6,9 @@
 
 #include "calibrate/calib_file.hpp"
 #include "calibrate/light.hpp"
-#include "simulate/render.hpp"
-#include "simulate/render_scene.hpp"
 #include "simulate/light_source.hpp"
+#include "simulate/render.hpp"
+#include <string>
 
 /* RIG.yml, what refract_simulate renders (cv::FileStorage):
 
@@ -27,7 +27,7 @@
       direct: { window: 0, poses: [ pair ] }
       glass: { window: 1, poses: [ pair ], motion: { rvec: [0., 0., 0.], tvec: [0.02, 0., 0.] } }    # all boards moved by
                                              # it in camera 1, or the cameras' mount by its inverse
-      room: { window: 1, scene: 1 }          # the textured scene, which surfaces_file.hpp tells, in place of the target
+      room: { window: 1, scene: 1 }          # the textured scene, told below, in place of the target
       lines: { window: 1, poses: [ pair ], emitters: [ laser ] }    # in the light of these, beside all other
     scene: ...
     texture: ...
@@ -36,6 +36,17 @@
 There is a target, a scene, or both. Drawn poses keep every point of the target `margin` pixels inside all images, or those of
 `seen_by` cameras, with and without window. */
 namespace tools {
+
+/* What RIG.yml says of a textured scene; frame of camera 1:
+
+    texture: { size: 60., contrast: 0.8, octaves: 8 }       # size of the coarsest grains; each octave halves it
+    scene:
+      - { shape: plane, point: [0., 0., 1000.], normal: [0., 0., 1.] }                # endless, or with
+                              # right: [1., 0., 0.], half_size: [200., 100.]           a rectangle
+      - { shape: sphere, center: [0., 0., 700.], radius: 80., color: [1., 0.8, 0.6] } */
+
+//! Throws Failure that names the file and the key.
+TexturedScene readSurfaces(const cv::FileNode& scene, const cv::FileNode& texture, const std::string& filename);
 
 struct NamedPose
 {

@@ -3,13 +3,98 @@
 
 #include "simulate/surface.hpp"
 #include "calibrate/window_face.hpp"
+#include <opencv2/calib3d.hpp>
 #include <algorithm>
 #include <cmath>
 
 namespace tools {
 
-using cv::Vec3d;
 using cv::Point2d;
+using cv::Vec3d;
+
+namespace {
+
+/* With w the weight along one axis and g a gradient whose components are uniform in -1 ... 1, the noise has the variance
+8/3 3 (integral w^2)^2 (integral w^2 t^2) = 0.03646. */
+const double GRAIN_STD = 0.190944;
+const double GAIN = 0.65;       // at 1 the tanh that keeps the sum in bounds would flatten the lightest and darkest places
+const double FAR = 1e12;        // grains: beyond, a double does not tell points of one grain apart
+
+uint64_t mixed(uint64_t bits)
+{
+    for (int round = 0; round < 2; round++)
+    {
+        bits ^= bits >> 32;
+        bits *= 0x9E3779B97F4A7C15ull;
+    }
+    return bits ^ (bits >> 29);
+}
+
+//! 21 bits of a hash -> -1 ... 1.
+double component(uint64_t bits)
+{
+    return (double)(bits & 0x1FFFFF)/0x100000 - 1;
+}
+
+//! 1 at 0, 0 at 1; slope and curvature 0 at both.
+double fade(double t)
+{
+    return 1 - t*t*t*(10 + t*(6*t - 15));
+}
+
+//! Gradient noise of lattice spacing 1: 0 at the lattice's points, mean 0, standard deviation GRAIN_STD.
+double grain(uint64_t seed, const Vec3d& p)
+{
+    const double x = std::floor(p[0]), y = std::floor(p[1]), z = std::floor(p[2]);
+    const double u = p[0] - x, v = p[1] - y, w = p[2] - z;
+    const double weightX[] = {fade(u), fade(1 - u)}, weightY[] = {fade(v), fade(1 - v)}, weightZ[] = {fade(w), fade(1 - w)};
+    double sum = 0;
+    for (int k = 0; k < 2; k++)
+        for (int j = 0; j < 2; j++)
+            for (int i = 0; i < 2; i++)
+            {
+                // Odd factors, far from each other's small multiples: near points get different sums.
+                const uint64_t point = (uint64_t)((int64_t)x + i)*0x8DA6B343CB1AB531ull
+                                       + (uint64_t)((int64_t)y + j)*0xD8163841FE5C47A9ull
+                                       + (uint64_t)((int64_t)z + k)*0x2F4A1B97D6E8A4C5ull;
+                const uint64_t hash = mixed(seed ^ point);
+                sum += weightX[i]*weightY[j]*weightZ[k]
+                       *(component(hash)*(u - i) + component(hash >> 21)*(v - j) + component(hash >> 42)*(w - k));
+            }
+    return sum;
+}
+
+//! Share of an octave that samples so far apart can show without showing something else: all of two samples a grain, none of one.
+double shown(double spacing, double size)
+{
+    return std::clamp(size/spacing - 1, 0., 1.);
+}
+
+} // namespace
+
+SolidTexture::SolidTexture(const TextureOptions& options, uint64_t seed)
+    : contrast_(options.contrast), scale_(GAIN/(GRAIN_STD*std::sqrt((double)options.octaves)))
+{
+    cv::Rodrigues(Vec3d(0.5, 0.7, 0.3), turn_);
+    double size = options.size;
+    for (int i = 0; i < options.octaves; i++, size /= 2)
+        octaves_.push_back({size, mixed(seed*64 + i + 1)});
+}
+
+double SolidTexture::at(const Vec3d& point, double spacing) const
+{
+    const Vec3d turned = turn_*point;
+    double sum = 0;
+    for (const Octave& octave : octaves_)
+    {
+        const double share = shown(spacing, octave.size);
+        const Vec3d inGrains = turned*(1/octave.size);
+        if (!(share > 0) || !(cv::norm(inGrains, cv::NORM_INF) < FAR))      // the finer ones neither
+            break;
+        sum += share*grain(octave.seed, inGrains);
+    }
+    return 1 - contrast_*(0.5 - 0.5*std::tanh(scale_*sum));
+}
 
 namespace {
 

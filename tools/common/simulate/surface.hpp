@@ -7,10 +7,43 @@
 #include <opencv2/core.hpp>
 #include <opencv2/refract.hpp>
 #include <limits>
+#include <memory>
 #include <vector>
 
 /* Surfaces that rays intersect. All in the frame of the scene, which is that of camera 1. */
 namespace tools {
+
+struct TextureOptions
+{
+    double size = 0.;           //!< of the coarsest grains; each octave halves it
+    double contrast = 0.8;      //!< 0: none, 1: the darkest grains are nearly black
+    int octaves = 8;
+};
+
+/* A texture that fills space, as the grain of wood or stone does: whatever surface is cut through it is textured, and all cameras
+see the same there. The sum of several octaves of gradient noise, all of the same strength, so that it looks alike at all ranges.
+The gradients come from a hash of the lattice point: no tables, the same on every machine. */
+class SolidTexture
+{
+public:
+    SolidTexture(const TextureOptions& options, uint64_t seed);
+
+    /** Share of a surface's colour that the texture leaves, 1 - contrast ... 1.
+    @param spacing between neighbouring samples there: octaves that they are too coarse for are left out, as they would give
+    each camera another pattern */
+    double at(const cv::Vec3d& point, double spacing) const;
+
+private:
+    struct Octave
+    {
+        double size;
+        uint64_t seed;
+    };
+
+    cv::Matx33d turn_;          //!< so that usual planes are not parallel to the lattice
+    double contrast_, scale_;
+    std::vector<Octave> octaves_;
+};
 
 struct SceneRay
 {
@@ -92,6 +125,23 @@ std::vector<SceneRay> raysOf(const std::vector<cv::Point2d>& pixels, const Viewp
 
 //! Angle between the rays of neighbouring pixels in the middle of the image, radians; 0 where there are no rays.
 double pixelAngle(const Viewpoint& view);
+
+//! Surfaces with one texture through all of them.
+struct TexturedScene
+{
+    std::vector<std::shared_ptr<const Surface>> surfaces;
+    TextureOptions texture;
+    uint64_t seed = 1;              //!< of the texture
+};
+
+//! The first surface on the ray of a sample, or none.
+struct SurfaceHit
+{
+    const Surface* surface = nullptr;
+    Intersection intersection;
+};
+
+SurfaceHit firstSurface(const TexturedScene& scene, const SceneRay& ray);
 
 } // namespace tools
 

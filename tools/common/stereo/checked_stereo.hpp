@@ -4,13 +4,42 @@
 #ifndef REFRACT_TOOLS_CHECKED_STEREO_HPP
 #define REFRACT_TOOLS_CHECKED_STEREO_HPP
 
+#include "stereo/dense_stereo.hpp"
 #include "stereo/match_support.hpp"
-#include "stereo/row_check.hpp"
 #include "stereo/wide_search.hpp"
+#include <string>
 
 /* Dense stereo that does not guess: matches that nothing supports are removed, and what the images say against the calibration or
 the range of depths is said, or the pair is refused. */
 namespace tools {
+
+/* Row errors of a pair against what its calibration may be off by, and what could explain them. An error along the rows cannot be
+seen: it is a wrong depth. So each cause that explains the errors across the rows is asked for its errors along them. */
+
+//! How far the matches of a region of rectified1 miss their rows.
+struct RowCell
+{
+    cv::Point at;           //!< pixel of the match that is the median
+    double offset;          //!< px: the median
+    double sigma;           //!< of the median, from the differences in the region
+};
+
+struct RowCheck
+{
+    double found = NAN;         //!< RMS, px; NaN: too few matches tell
+    double expected = NAN;      //!< RMS of one standard deviation, px: of the calibration's covariance and the noise
+    double times = 0;           //!< found in units of expected, all directions by themselves: about 1 if all is well
+    double depthChange = 0;     //!< share of the depths, RMS: by so much the causes that explain the rows would change them
+    std::string causes;         //!< those that explain them best, with their sizes, joined by "or"; empty: none explains them
+    bool contradicts() const { return times > 3; }
+};
+
+RowCheck checkRows(const RectifiedRig& rig, const DenseStereo& stereo);
+
+/** One standard deviation of x, y and z of each point (camera-1 frame): that of its disparity, along the line of sight, and what
+the calibration's covariance, if there is one, does to all points; CV_32FC3.
+@param contradiction share of its distance by which a point may be off beside that, as the images contradict the calibration */
+cv::Mat pointSigma(const RectifiedRig& rig, const DenseStereo& stereo, double contradiction);
 
 struct PairDiagnosis;
 

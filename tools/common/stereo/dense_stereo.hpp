@@ -6,6 +6,7 @@
 
 #include "stereo/rectified_rig.hpp"
 #include <opencv2/core.hpp>
+#include <algorithm>
 
 /* Dense stereo through windows, in two passes. First the images are made half as large, rectified for one plane and matched;
 then rectified anew for the depths found, at full size, where an ordinary matcher sees an ordinary pair. */
@@ -45,6 +46,60 @@ struct DenseStereo
 
 //! Both images of one moment, of the rig's size, 8-bit, grey or colour.
 DenseStereo matchPair(const RectifiedRig& rig, const cv::Mat& image1, const cv::Mat& image2, const MatcherOptions& options);
+
+//! z (camera-1 frame) of each pixel of the raw image of camera 1, CV_32F; NaN where nothing was matched.
+cv::Mat depthOfRawPixels(const RectifiedRig& rig, const DenseStereo& stereo);
+
+//! Both images of a moment, rectified, and for each new pixel the raw one that it was taken from (CV_32FC2).
+struct RectifiedImages
+{
+    cv::Mat image[2], map[2];
+};
+
+/** @param depth1, depth2 as initRefractiveStereoRectifyMap's
+@param scale of the new images, beside the rig's */
+RectifiedImages rectify(const RectifiedRig& rig, const cv::Mat& image1, const cv::Mat& image2, cv::InputArray depth1,
+                        cv::InputArray depth2, double scale);
+
+//! Grey, and turned so that partners lie along the rows: those of a vertical pair lie along the columns.
+cv::Mat forMatcher(const RectifiedRig& rig, const cv::Mat& image);
+//! The way back.
+cv::Mat fromMatcher(const RectifiedRig& rig, const cv::Mat& image);
+
+//! Disparity along the rows, in pixels of the given grey images; NaN: none.
+cv::Mat match(const cv::Mat& first, const cv::Mat& second, int minDisparity, int disparities, const MatcherOptions& options);
+
+/* A search in smaller images is made in slabs of depths, each rectified for a plane of its own: for so many that rows agree to a
+fraction of its pixels. Mostly one will do; a wide lens before water needs a dozen. */
+class Slabs
+{
+public:
+    //! @param scale of the smaller images
+    Slabs(const RectifiedRig& rig, double scale) : rig_(rig), scale_(scale)
+    {
+        const double TYPICAL = 0.3, LARGEST = 1.5;      // px of the smaller images
+        const int MOST = 64;
+        count_ = std::clamp(cvCeil(scale*std::max(rig.rowError[0]/TYPICAL, rig.rowError[1]/LARGEST)), 1, MOST);
+    }
+    int count() const { return count_; }
+    //! First disparity of a slab, full size; of the one after the last, the end.
+    double begin(int k) const { return rig_.minDisparity() + k*(double)rig_.disparities()/count_; }
+    //! z of its plane in the rectified frame.
+    double depth(int k) const
+    {
+        // Disparities are those of the whole image: beyond infinity, and far before the range, there is nothing.
+        const double farthest = std::max(begin(k), rig_.shift()), middle = std::max(0.5*(farthest + begin(k + 1)), rig_.shift() + 0.5);
+        return count_ == 1 ? rig_.planeDepth() : std::max(rig_.depthOf(middle), 0.5*rig_.depthRange()[0]);
+    }
+    //! First disparity of the smaller images, and how many a matcher takes.
+    int from(int k) const { return cvFloor(begin(k)*scale_); }
+    int disparities(int k) const { return cvCeil((begin(k + 1)*scale_ + 1 - from(k))/16)*16; }
+
+private:
+    const RectifiedRig& rig_;
+    double scale_;
+    int count_;
+};
 
 } // namespace tools
 

@@ -4,7 +4,7 @@
 #ifndef REFRACT_TOOLS_MATCH_SUPPORT_HPP
 #define REFRACT_TOOLS_MATCH_SUPPORT_HPP
 
-#include "stereo/rectified_match.hpp"
+#include "stereo/dense_stereo.hpp"
 #include <opencv2/core.hpp>
 
 /* A matcher fills areas without texture from their neighbours, and finds a best match for noise too. Afterwards the two patches of a

@@ -6,6 +6,9 @@
 
 #include "calibrate/calib_file.hpp"
 #include "console/frames.hpp"
+#include "stereo/rectified_rig.hpp"
+#include <string>
+#include <vector>
 
 namespace tools {
 
@@ -23,6 +26,18 @@ private:
     const Calibration& rig_;
     bool needsColour_;
 };
+
+//! What the table says of a pair.
+struct PairResult
+{
+    std::string stem;
+    double matched = 0, near = 0, far = 0, typicalSigma = NAN, rowsFound = NAN, rowsExpected = NAN, seconds = 0;
+    std::vector<std::string> warnings;
+    std::string refusal;                //!< empty: it is written
+};
+
+//! A row for each pair, or one for all where these are too many to read.
+void printTable(const std::vector<PairResult>& results, const RectifiedRig& rig);
 
 } // namespace tools
 

@@ -1,11 +1,11 @@
 // This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
 // SPDX-License-Identifier: Apache-2.0
 
-#include "stereo/row_check.hpp"
+#include "stereo/checked_stereo.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "math/dense.hpp"
 #include "measure/eigen_matrix.hpp"
-#include "measure/view_derivatives.hpp"
+#include "measure/rig_vector.hpp"
 #include <opencv2/calib3d.hpp>
 #include <algorithm>
 #include <cmath>

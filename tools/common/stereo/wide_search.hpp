@@ -4,13 +4,24 @@
 #ifndef REFRACT_TOOLS_WIDE_SEARCH_HPP
 #define REFRACT_TOOLS_WIDE_SEARCH_HPP
 
+#include "match/depth_range.hpp"
+#include "match/features.hpp"
 #include "stereo/rectified_rig.hpp"
-
 #include <memory>
 
 /* A matcher that is told a range of depths finds a partner in it for what lies elsewhere, too. So small images are matched over all
 depths, from as near as both cameras see to infinity: what looks alike outside the range is not in it. */
 namespace tools {
+
+/* The depth range of a scene, from features that are matched in both raw images. */
+
+/** z (camera-1 frame) of features matched in both images, whose two rays meet; ascending.
+@param image1, image2 of one moment, 8-bit, grey or colour */
+std::vector<float> depthsOfFeatures(const Calibration& calibration, const cv::Mat& image1, const cv::Mat& image2);
+
+/** Robust ends of the depths, a little wider.
+@param depths ascending; throws Failure that asks for --depth if there are fewer than MIN_FEATURES */
+cv::Vec2d depthRangeOf(const std::vector<float>& depths);
 
 //! Depths at which both images look alike, whatever was asked for.
 struct WideDepths

@@ -4,7 +4,7 @@
 #ifndef REFRACT_TOOLS_BALL_IMAGE_HPP
 #define REFRACT_TOOLS_BALL_IMAGE_HPP
 
-#include "target/refine_dots.hpp"
+#include "target/refine_points.hpp"
 
 /* Balls that are moved before cameras which do not move: what else is in a picture is there at other moments, too. */
 namespace tools {

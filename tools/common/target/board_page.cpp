@@ -6,7 +6,7 @@
 #include "console/failure.hpp"
 #include "console/file_output.hpp"
 #include "console/numbers.hpp"
-#include "console/utf8.hpp"
+#include "console/table.hpp"
 
 #include <cairo-pdf.h>
 #include <cairo-svg.h>

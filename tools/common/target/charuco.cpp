@@ -3,7 +3,7 @@
 
 #include "target/charuco.hpp"
 #include "console/failure.hpp"
-#include "target/refine_corners.hpp"
+#include "target/refine_points.hpp"
 
 #include <opencv2/core/version.hpp>
 #include <opencv2/calib3d.hpp>

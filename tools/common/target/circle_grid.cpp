@@ -5,7 +5,7 @@
 #include "console/numbers.hpp"
 #include "target/dot_lattice.hpp"
 #include "target/limited_search.hpp"
-#include "target/refine_dots.hpp"
+#include "target/refine_points.hpp"
 #include <opencv2/calib3d.hpp>
 #include <opencv2/features2d.hpp>
 #include <algorithm>

@@ -6,8 +6,7 @@
 #include "console/failure.hpp"
 #include "console/numbers.hpp"
 #include "console/table.hpp"
-#include "target/dot_matching.hpp"
-#include "target/refine_dots.hpp"
+#include "target/refine_points.hpp"
 
 #include <opencv2/features2d.hpp>
 #include <opencv2/imgproc.hpp>

@@ -7,7 +7,6 @@
 #include "target/chessboard.hpp"
 #include "target/circle_grid.hpp"
 #include "target/dot_target.hpp"
-#include "target/partial_chessboard.hpp"
 #include "console/failure.hpp"
 #include "console/numbers.hpp"
 #include "console/options.hpp"
