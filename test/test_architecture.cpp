@@ -227,6 +227,12 @@ TEST_CASE("Of the module's inner headers the tools include those that this test 
     const std::vector<std::string> taken = { "math/dense.hpp", "camera/storage.hpp", "pose/near_origin.hpp", "pose/poses.hpp",
                                              "calibrate/refit.hpp", "window/wedge.hpp" };
     int count = 0;
+    const std::string page = contentsOf(ROOT + "/doc/architecture.md");
+    for (const std::string& header : taken)
+    {
+        CAPTURE(header);
+        CHECK(page.find("`" + header + "`") != std::string::npos);
+    }
     for (const std::string& file : below(ROOT + "/tools", false))
         for (const std::string& header : matches(contentsOf(ROOT + "/tools/" + file), R"re(#include "(\w+/[\w.]+)")re"))
         {

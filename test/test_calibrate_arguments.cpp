@@ -211,10 +211,11 @@ TEST_CASE("An empty rotation is none where it may not be left out", "[calibrate_
     Mat status;
     std::vector<Mat> lines;
     CHECK_THROWS_WITH(triangulateRefractive(first, second, Mat(), T, pixels, pixels, found), Contains("R is empty"));
-    CHECK_THROWS_WITH(triangulateRefractive({ first, second }, { Mat::eye(3, 3, CV_64F), Mat() }, { Mat(Vec3d()), Mat(T) },
-                                            { Mat(pixels), Mat(pixels) }, found), Contains("Rs[1] is empty"));
+    const std::vector<Mat> Rs = { Mat::eye(3, 3, CV_64F), Mat() }, Ts = { Mat::zeros(3, 1, CV_64F), Mat(T) };
+    CHECK_THROWS_WITH(triangulateRefractive(truth.cameras, Rs, Ts, std::vector<std::vector<Point2d> >(2, pixels), found),
+                      Contains("Rs[1] is empty"));
     CHECK_THROWS_WITH(refractiveProjectPoints(points, noArray(), T, first, projected), Contains("rvec is empty"));
-    CHECK_THROWS_WITH(computeRefractiveEpilines(pixels, 1, first, second, Mat(), T, Vec2d(300, 900), 5, lines, status),
+    CHECK_THROWS_WITH(computeRefractiveEpilines(pixels, 1, first, second, Mat(), T, Vec2d(300, 900), lines),
                       Contains("R is empty"));
     refractiveUndistortPoints(pixels, projected, first, 600., noArray(), noArray(), status);      // may be left out
     CHECK(countNonZero(status) == 0);
