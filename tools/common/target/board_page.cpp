@@ -156,7 +156,7 @@ BoardPage::BoardPage(const Target& target, double millimetres, const std::string
 
 double BoardPage::border() const
 {
-    return !hasDots() ? target_.border()*square() : target_.pattern() == Target::ACIRCLES ? 2*DOT*square() : DOT*square();
+    return !target_.hasDots() ? target_.border()*square() : target_.pattern() == Target::ACIRCLES ? 2*DOT*square() : DOT*square();
 }
 
 Size2d BoardPage::neededPaper() const

@@ -34,7 +34,6 @@ struct BoardPage
     void write(const std::string& path, const std::vector<std::string>& lines) const;
 
 private:
-    bool hasDots() const { return target_.pattern() == Target::CIRCLES || target_.pattern() == Target::ACIRCLES; }
     double square() const { return target_.square()*millimetres_; }
     double border() const;      //!< from the outermost points to the board's edge
     void drawBoard(_cairo* cairo) const;

@@ -46,6 +46,8 @@ public:
     explicit Target(const TargetOptions& options);
 
     Pattern pattern() const { return pattern_; }
+    //! A grid of dots, not of edges.
+    bool hasDots() const { return pattern() == CIRCLES || pattern() == ACIRCLES; }
     cv::Size size() const { return size_; }                 //!< inner corners, dots, or corners of tags
     std::string sizeText() const;                           //!< as --size has it; AprilGrid: tags
     std::string patternName() const;                        //!< as --pattern has it
