@@ -4,6 +4,7 @@
 #include "bundle/bundle_output.hpp"
 #include "bundle/matches.hpp"
 #include "bundle/bundle_findings.hpp"
+#include "bundle/exchanged_cameras.hpp"
 #include "calibrate/units.hpp"
 #include "colmap/survey_output.hpp"
 #include "console/cli.hpp"
@@ -68,7 +69,8 @@ and for cameras the nearest pinholes, for refract_undistort --colmap. --points-o
 those whose rays are nearly parallel have their large +-. --poses-out: the same of each view. --memory: GB that these +- may take; above it
 those of points are for known cameras and views, and too small, and views have none (nan).
 
-Exit code: 0 done, 1 could not do it, 2 done and written, but a limit is not met, or what start.yml knows is contradicted.)";
+Exit code: 0 done, 1 could not do it, 2 done and written, but a limit is not met, or what start.yml says is contradicted; also if what two
+cameras saw is exchanged, where the adjustment may come to no end, and nothing is written.)";
 
 namespace {
 
@@ -224,6 +226,29 @@ Observations findWand(const Options& o, const Calibration& file, const BundleSta
     return {found.matches, found.lengths, textOf(found) + "\n", jsonOf(found)};
 }
 
+//! px, of a coordinate; 0: not known.
+double knownNoise(const Options& o, const Calibration& file, const Matches& matches)
+{
+    return o.pixelSigma > 0. ? o.pixelSigma : !matches.stds.empty() ? matches.usualStd() : file.sigma;
+}
+
+//! What is to be thought of it, and why it is not as the start says: an exchange comes before what it leads to.
+BundleFindings judged(const Options& o, const Calibration& file, const Matches& matches, const GivenLengths& lengths,
+                      const BundleStart& start, const BundleAdjustment& adjustment)
+{
+    const double knownSigma = knownNoise(o, file, matches);
+    BundleFindings findings = findingsOf(start, lengths, adjustment, knownSigma, o.maxRms);
+    const std::string exchange = findings.contradictions.empty() ? "" : exchangedCameras(start, matches, lengths, o.robust, knownSigma);
+    if (!exchange.empty())
+    {
+        findings.contradictions = {exchange};
+        return findings;
+    }
+    checkPlaces(start, [&](const BundleStart& freed) { return adjustBundle(freed, matches, lengths, o.robust); }, findings);
+    explain(o, file, matches, lengths, start, adjustment, findings);
+    return findings;
+}
+
 int bundleMatches(const Options& options, const Calibration& file, const Command& command)
 {
     Observations seen = options.wand.empty() ? readTables(options, file) : Observations();
@@ -236,11 +261,20 @@ int bundleMatches(const Options& options, const Calibration& file, const Command
     const GivenLengths& lengths = seen.lengths;
     requireScale(start, options.start, matches, lengths);
     requireSameMoments(start, matches);
-    const BundleAdjustment adjustment = adjustBundle(start, matches, lengths, options.robust);
-    const double knownSigma = options.pixelSigma > 0. ? options.pixelSigma : !matches.stds.empty() ? matches.usualStd() : file.sigma;
-    BundleFindings findings = findingsOf(start, lengths, adjustment, knownSigma, options.maxRms);
-    checkPlaces(start, [&](const BundleStart& freed) { return adjustBundle(freed, matches, lengths, options.robust); }, findings);
-    explain(options, file, matches, lengths, start, adjustment, findings);
+    BundleAdjustment adjustment;
+    try
+    {
+        adjustment = adjustBundle(start, matches, lengths, options.robust);
+    }
+    catch (const Failure&)
+    {
+        const std::string exchange = exchangedCameras(start, matches, lengths, options.robust, knownNoise(options, file, matches));
+        if (exchange.empty())
+            throw;
+        std::cerr << "refract_bundle: " << exchange << "; as given they have no fit, and nothing is written.\n";
+        return LIMIT_NOT_MET;
+    }
+    const BundleFindings findings = judged(options, file, matches, lengths, start, adjustment);
     const std::string unit = unitOf(options, file);
     writeCalibration(options.out, resultOf(options, adjustment, findings, file, unit, command));
     if (!options.pointsOut.empty())

@@ -221,7 +221,7 @@ std::vector<int> BundleAdjustment::outliers() const
     return list;
 }
 
-BundleAdjustment adjustBundle(const BundleStart& start, const Matches& matches, const GivenLengths& lengths, bool robust)
+BundleAdjustment adjustBundle(const BundleStart& start, const Matches& matches, const GivenLengths& lengths, bool robust, int iterations)
 {
     BundleAdjustment result;
     Fit& fit = result.fit;
@@ -234,7 +234,7 @@ BundleAdjustment adjustBundle(const BundleStart& start, const Matches& matches, 
         Rs.push_back(Mat(fit.rig.extrinsics[c].R, true));
         Ts.push_back(Mat(fit.rig.extrinsics[c].T, true));
     }
-    const TermCriteria criteria(TermCriteria::COUNT + TermCriteria::EPS, 1000, 1e-12);
+    const TermCriteria criteria(TermCriteria::COUNT + TermCriteria::EPS, iterations, 1e-12);
     Mat points3D, deviations;
     adjusted([&] {
         fit.rms = refractiveBundleAdjust(pixels, fit.rig.cameras, fit.rig.windows, Rs, Ts, noArray(), noArray(), points3D, lengths.rows(),

@@ -26,7 +26,8 @@ struct BundleAdjustment
 };
 
 //! Throws Failure that says what the matches do not determine, or why there is no answer.
-BundleAdjustment adjustBundle(const BundleStart& start, const Matches& matches, const GivenLengths& lengths, bool robust);
+BundleAdjustment adjustBundle(const BundleStart& start, const Matches& matches, const GivenLengths& lengths, bool robust,
+                              int iterations = 1000);
 
 /** Runs what adjusts. Throws Failure that says what was found, then what to do here. */
 void adjusted(const std::function<void()>& adjust);

@@ -27,29 +27,6 @@ const int FEWEST_POINTS = 20;           // that two cameras see
 const double FAR_BETTER = 0.25;         // of what rays miss each other by: a start that is off bends it, by as much for all moments
 const double APART_PX = 10.;            // less is the start's doing
 
-//! How far pixels are from the points that their rays give; px, of the middling point that this camera saw. NO_FIT: too few.
-double missOf(const BundleStart& start, const RigPixels& pixels, int camera)
-{
-    Mat errors;
-    const std::vector<Point3d> points = triangulate(start.rig, pixels, TRIANGULATE_MIDPOINT, errors);
-    std::vector<double> missed;
-    for (size_t i = 0; i < points.size(); i++)
-    {
-        int cameras = 0;
-        double worst = 0.;
-        for (int c = 0; c < errors.cols; c++)
-            if (seen(pixels[c][i]))
-            {
-                const double error = errors.at<double>((int)i, c);
-                worst = std::max(worst, std::isfinite(error) ? error : NO_FIT);
-                cameras++;
-            }
-        if (cameras > 1 && seen(pixels[camera][i]))
-            missed.push_back(worst);
-    }
-    return (int)missed.size() < FEWEST_POINTS ? NO_FIT : median(missed);
-}
-
 //! The row of the same mark so many moments later; -1: there is none.
 std::vector<int> rowsLater(const Matches& matches, int moments)
 {
@@ -205,6 +182,29 @@ void findContradictions(const BundleStart& start, const Fit& fit, BundleFindings
             " is %.0f standard deviations from what the start says: it has changed since, or a given value is wrong", worst));
 }
 
+/* A start is good to some degrees and per cent. What fits far from it may be another minimum, of matches that are not what they are given
+for. What is known of R and T has its contradictions. */
+void findFarSteps(const BundleStart& start, BundleFindings& findings)
+{
+    const double FAR_DEG = 15., FAR_SHARE = 1./3., MANY = 2.;
+    double worst = 1.;
+    std::string sentence;
+    for (size_t c = 1; c < findings.corrections.size() && (start.flags & GLASS_FREE_EXTRINSICS); c++)
+    {
+        const Correction &R = findings.corrections[c].R, &T = findings.corrections[c].T;
+        const double away = norm(start.rig.extrinsics[c].T);
+        const double far = std::max((R.by - MANY*R.std)/FAR_DEG, (T.by - MANY*T.std)/(FAR_SHARE*away));
+        if (far <= worst)
+            continue;
+        worst = far;
+        sentence = format("R of camera %zu is %.3g degrees from the start and T %.3g, where T is %.3g long: is the start good to some "
+                          "degrees and per cent, and are the cameras in its order? Else the matches fit at a wrong place", c + 1, R.by,
+                          T.by, away);
+    }
+    if (!sentence.empty())
+        findings.contradictions.push_back(sentence);
+}
+
 double shareLeftOut(const BundleAdjustment& adjustment)
 {
     return adjustment.seenPixels > 0 ? 1. - (double)adjustment.usedPixels/adjustment.seenPixels : 0.;
@@ -220,6 +220,28 @@ double noiseOfAll(const BundleAdjustment& adjustment)
 }
 
 } // namespace
+
+double missOf(const BundleStart& start, const RigPixels& pixels, int camera)
+{
+    Mat errors;
+    const std::vector<Point3d> points = triangulate(start.rig, pixels, TRIANGULATE_MIDPOINT, errors);
+    std::vector<double> missed;
+    for (size_t i = 0; i < points.size(); i++)
+    {
+        int cameras = 0;
+        double worst = 0.;
+        for (int c = 0; c < errors.cols; c++)
+            if (seen(pixels[c][i]))
+            {
+                const double error = errors.at<double>((int)i, c);
+                worst = std::max(worst, std::isfinite(error) ? error : NO_FIT);
+                cameras++;
+            }
+        if (cameras > 1 && seen(pixels[camera][i]))
+            missed.push_back(worst);
+    }
+    return (int)missed.size() < FEWEST_POINTS ? NO_FIT : median(missed);
+}
 
 void requireSameMoments(const BundleStart& start, const Matches& matches)
 {
@@ -265,6 +287,7 @@ BundleFindings findingsOf(const BundleStart& start, const GivenLengths& lengths,
     if (fit.dof < FEW)
         findings.weak.push_back("so few data (every +- may be 1.4 times larger)");
     findContradictions(start, fit, findings);
+    findFarSteps(start, findings);
     const double NOISIER = 5., NO_DETECTOR = 2.;     // px
     const double MOST_LEFT_OUT = 1./3.;
     if (knownSigma > 0. && fit.sigma > NOISIER*knownSigma)

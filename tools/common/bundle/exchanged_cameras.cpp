@@ -1,0 +1,84 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#include "bundle/exchanged_cameras.hpp"
+#include "bundle/bundle_findings.hpp"
+#include "console/failure.hpp"
+#include <algorithm>
+
+using namespace cv;
+
+namespace tools {
+
+namespace {
+
+const int ENOUGH_POINTS = 200, ENOUGH_ITERATIONS = 100;     // a right start needs no more
+const int MOST_TRIED = 6;                                   // of four cameras all
+
+struct Exchange
+{
+    int a, b;
+    Matches matches;
+    double miss;                    //!< of rays, with the start
+};
+
+//! Some of the points, with those that lengths lead to; the others are seen by no camera.
+Matches thinned(const Matches& matches, const GivenLengths& lengths)
+{
+    const size_t count = matches.names.size(), step = std::max<size_t>(1, count/ENOUGH_POINTS);
+    std::vector<uchar> kept(count, 0);
+    for (size_t i = 0; i < count; i += step)
+        kept[i] = 1;
+    for (size_t i = 0; i < lengths.list.size(); i += step)
+        kept[lengths.list[i].a] = kept[lengths.list[i].b] = 1;
+    Matches some = matches;
+    for (std::vector<Point2d>& pixels : some.pixels)
+        for (size_t i = 0; i < count; i++)
+            if (!kept[i])
+                pixels[i] = Point2d(NAN, NAN);
+    return some;
+}
+
+Exchange exchangeOf(const BundleStart& start, const Matches& given, int a, int b)
+{
+    Exchange exchange = {a, b, given, 0.};
+    std::swap(exchange.matches.pixels[a], exchange.matches.pixels[b]);
+    if (!given.stds.empty())
+        std::swap(exchange.matches.stds[a], exchange.matches.stds[b]);
+    exchange.miss = missOf(start, exchange.matches.pixels, a);
+    return exchange;
+}
+
+//! Those whose rays miss each other least first.
+std::vector<Exchange> exchangesOf(const BundleStart& start, const Matches& matches)
+{
+    std::vector<Exchange> all;
+    for (int b = 1; b < matches.cameraCount(); b++)
+        for (int a = 0; a < b; a++)
+            all.push_back(exchangeOf(start, matches, a, b));
+    std::stable_sort(all.begin(), all.end(), [](const Exchange& p, const Exchange& q) { return p.miss < q.miss; });
+    if (all.size() > MOST_TRIED)
+        all.resize(MOST_TRIED);
+    return all;
+}
+
+} // namespace
+
+std::string exchangedCameras(const BundleStart& start, const Matches& matches, const GivenLengths& lengths, bool robust, double knownSigma)
+{
+    for (const Exchange& exchange : exchangesOf(start, thinned(matches, lengths)))
+        try
+        {
+            const BundleAdjustment adjustment = adjustBundle(start, exchange.matches, lengths, robust, ENOUGH_ITERATIONS);
+            if (findingsOf(start, lengths, adjustment, knownSigma, 0.).contradictions.empty())
+                return format("the observations of cameras %d and %d are exchanged: taken as each other's, they fit near the start with "
+                              "%.3g px of noise; exchange their columns in the table (of --wand their images), or the two cameras of the "
+                              "start", exchange.a + 1, exchange.b + 1, adjustment.fit.sigma);
+        }
+        catch (const Failure&)              // no fit, no explanation
+        {
+        }
+    return "";
+}
+
+} // namespace tools

@@ -1,0 +1,18 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#ifndef REFRACT_TOOLS_EXCHANGED_CAMERAS_HPP
+#define REFRACT_TOOLS_EXCHANGED_CAMERAS_HPP
+
+#include "bundle/bundle_start.hpp"
+
+namespace tools {
+
+/** Whether what two cameras saw is given as each other's. Such matches have fits of their own, to the noise, of a rig that is far from
+the start, or contradict something that is right, or have no fit: so this asks which exchange fits to the noise near the start.
+@param knownSigma as of findingsOf @return a sentence; empty: no exchange explains it */
+std::string exchangedCameras(const BundleStart& start, const Matches& matches, const GivenLengths& lengths, bool robust, double knownSigma);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_EXCHANGED_CAMERAS_HPP
