@@ -396,8 +396,9 @@ TEST_CASE("Blocks cover every point once", "[arrays]")
 
 TEST_CASE("Rotations: matrix, vector, nothing; printed digits are made orthogonal", "[arrays]")
 {
-    CHECK(norm(readRotation(noArray(), "R") - Matx33d::eye()) == 0);
-    CHECK(norm(readRotation(Mat(), "R") - Matx33d::eye()) == 0);
+    CHECK(norm(readRotationOrNone(noArray(), "R") - Matx33d::eye()) == 0);
+    CHECK(norm(readRotationOrNone(Mat(), "R") - Matx33d::eye()) == 0);
+    CHECK_THAT(thrown([&] { readRotation(Mat(), "R"); }), Contains("R is empty"));
     const Matx33d quarter(0, -1, 0, 1, 0, 0, 0, 0, 1);
     CHECK(norm(readRotation(Vec3d(0, 0, CV_PI/2), "R") - quarter) < 1e-15);
     CHECK(norm(readRotation(Vec3f(0, 0, (float)CV_PI/2), "R") - quarter) < 1e-7);

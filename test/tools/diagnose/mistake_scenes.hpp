@@ -24,7 +24,8 @@ enum RigKind { ONE_IN_AIR, STEREO_IN_AIR, STEREO_IN_WATER, SHARED_WINDOW, RIG_KI
 const char* const RIG_NAMES[] = {"one, air", "stereo, air", "stereo, water", "shared window"};
 
 enum Mistake { NONE_AT_ALL, THICKNESS, INDEX, MEDIUM, SQUARE, MOTION, NUDGE, WEDGE, FOCUS, PLACE, TURNED, MIRRORED,
-               SWAPPED_STATES, SWAPPED_CAMERAS, UNPAIRED, UNRELATED, BOARD_SIZE, ALL_TURNED, SHUFFLED, RENUMBERED, RENUMBERED_GLASS, SHAPE };
+               SWAPPED_STATES, SWAPPED_CAMERAS, UNPAIRED, UNRELATED, BOARD_SIZE, ALL_TURNED, SHUFFLED, RENUMBERED, RENUMBERED_GLASS,
+               SHAPE };
 const char* const MISTAKE_NAMES[] = {"none", "thickness", "index", "medium", "square", "boards moved", "boards nudged", "wedge", "focus",
                                      "camera moved", "turned", "mirrored", "direct/glass", "cameras swapped", "unpaired", "unrelated",
                                      "board size", "all turned", "shuffled", "renumbered", "glass renumbered",

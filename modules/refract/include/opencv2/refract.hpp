@@ -661,8 +661,9 @@ CV_EXPORTS_W void refractiveUndistortPoints(InputArray src, OutputArray dst, con
 @param window see GlassWindow.
 @param depth z of the scene points, camera frame: one number for all, or N numbers. An invalid depth sets only the status of
 its own point. (d, 0, 0, 0) means the number d, because Scalar(d) is such an array. For exactly four points this is ambiguous
-and is refused: give a double, or an array of one number; a plane is not taken here. Depths that are not positive have the status
-REFRACT_BEHIND_WINDOW, without a window REFRACT_NO_INTERSECTION; positive ones have no effect there, and the array may be empty.
+and is refused: give a double, or an array of one number; a plane is not taken here. Depths that are not positive have the
+status REFRACT_BEHIND_WINDOW, without a window REFRACT_NO_INTERSECTION; positive ones have no effect there, and the array may
+be empty.
 @param R rotation camera -> rectified camera, 3x3 or rotation vector; omitted = identity.
 @param P new camera matrix 3x3 or projection matrix 3x4 (its left 3x3 is used); omitted = identity.
 @param status Nx1 CV_8U, see RefractiveStatus.

@@ -59,7 +59,7 @@ void writeExtrinsics(const std::vector<RigidTransform>& extrinsics, OutputArrayO
     const bool isFixed = Rs.needed() && !Rs.isMatVector();     // std::vector<Matx33d>, which OutputArray cannot resize
     const bool areVectors = isFixed && Rs.type() == CV_64FC3;
     if (isFixed && ((Rs.type() != CV_64FC(9) && !areVectors) || (int)Rs.total() != count))
-        CV_Error_(Error::StsBadArg, ("Rs must be a std::vector<Mat>, or a std::vector<Matx33d> or <Vec3d> of %d", count));
+        CV_Error_(Error::StsBadArg, ("Rs must be a std::vector<Mat>, or a std::vector<Matx33d> of %d (or of Vec3d)", count));
     if (Rs.needed() && !isFixed)
         Rs.create(count, 1, CV_64F);
     Mat fixed = isFixed ? Rs.getMat() : Mat();
