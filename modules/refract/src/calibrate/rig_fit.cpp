@@ -181,7 +181,8 @@ bool startAsGiven(const Rig& rig, const RigViews& views, const RigTask& task, Ri
 
 FitOutcome findStart(const Rig& rig, RigTask& task, RigStart& start, std::vector<OtherMinimum>& minima)
 {
-    const RigViews views = task.isRobust() ? inlierViews(rig, task.views, task.flags) : task.views;
+    const int moved = task.isRefit ? task.flags | GLASS_FIX_NORMAL : task.flags;       // an earlier fit has found the windows
+    const RigViews views = task.isRobust() ? inlierViews(rig, task.views, moved) : task.views;
     const int flags = task.searchFlags();
     const bool isAsGiven = task.isRefit && startAsGiven(rig, views, task, start);
     const bool searchesLens = (flags & GLASS_FREE_INTRINSICS) && !isAsGiven, isIncremental = task.isIncremental(rig) && !isAsGiven;
