@@ -34,7 +34,9 @@ Camera mostAgreeing(const Camera& given, const RigViews& views, int c)
 {
     Camera best = given;
     double least = costOfPoses(given, views, c);
-    for (const TiltRing& ring : AGREEMENT_TILTS)
+    std::vector<TiltRing> rings(std::begin(KNOWN_LENS_TILTS), std::end(KNOWN_LENS_TILTS));
+    rings.push_back(STEEP_TILTS);
+    for (const TiltRing& ring : rings)
         for (const WindowPlace& place : placesAround(given.window(), ring.tilt, ring.count, ring.first))
         {
             const Camera other = withWindow(given, withPlace(given.window(), place));

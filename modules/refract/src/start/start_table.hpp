@@ -21,8 +21,8 @@ struct TiltRing
 };
 //! Where all but the window is known.
 const TiltRing KNOWN_LENS_TILTS[] = { { 0, 1, 0 }, { 0.2, 8, 0 }, { 0.45, 8, 0 } };
-//! Behind which it is tried how well wrong points can be told from right ones: no fit leads on from there.
-const TiltRing AGREEMENT_TILTS[] = { { 0, 1, 0 }, { 0.2, 8, 0 }, { 0.45, 8, 0 }, { 0.8, 8, 0 } };
+//! One more where no fit leads on from a tilt: where it is told which points are wrong.
+const TiltRing STEEP_TILTS = { 0.8, 8, 0 };
 //! Where each is tried with several lenses.
 const TiltRing SEALED_TILTS[] = { { 0.25, 4, 0.5 } };
 
