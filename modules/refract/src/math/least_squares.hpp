@@ -109,11 +109,12 @@ double expectedGain(const SumOfSquares<N>& here, const Vec<double, N>& step)
 /** The least sum of squares near a start.
 @param evaluate callable: evaluate(const Vec<double, N>& x, SumOfSquares<N>& sum), false where some error has no value
 @param x in: start, out: minimum
+@param here gets what is there
 @return the sum; NaN, and x as it was, if the start has none */
 template<int N, typename Evaluate>
-double minimizeSquares(const Evaluate& evaluate, const LeastSquaresEnd& end, Vec<double, N>& x)
+double minimizeSquares(const Evaluate& evaluate, const LeastSquaresEnd& end, Vec<double, N>& x, SumOfSquares<N>& here)
 {
-    SumOfSquares<N> here;
+    here = SumOfSquares<N>();
     if (!evaluate(x, here) || !std::isfinite(here.value))
         return std::numeric_limits<double>::quiet_NaN();
     Vec<double, N> leastDiagonal;               // for a parameter that hardly moves anything
@@ -147,6 +148,13 @@ double minimizeSquares(const Evaluate& evaluate, const LeastSquaresEnd& end, Vec
             break;
     }
     return here.value;
+}
+
+template<int N, typename Evaluate>
+double minimizeSquares(const Evaluate& evaluate, const LeastSquaresEnd& end, Vec<double, N>& x)
+{
+    SumOfSquares<N> here;
+    return minimizeSquares(evaluate, end, x, here);
 }
 
 }} // namespace
