@@ -223,19 +223,10 @@ static Pose solveRobustly(const Camera& camera, const ImagePoints& points, doubl
 //! A third of the points right: still 18 samples of three right ones.
 static const Effort OF_ONE_POSE = { 500, 0.9999 };
 
-//! Points that have rays to sample: no halves.
-static ImagePoints wholePoints(const std::vector<Point3d>& objectPoints, std::vector<Point2d> imagePoints)
-{
-    for (Point2d& pixel : imagePoints)
-        if (!isWhole(pixel))
-            pixel = Point2d(1, 1)*std::numeric_limits<double>::quiet_NaN();
-    return observed(objectPoints, imagePoints);
-}
-
 double costOfOnePose(const Camera& camera, const std::vector<Point3d>& objectPoints, const std::vector<Point2d>& imagePoints)
 {
     const double LIMIT = 8;             // pixels: of a rough window
-    const ImagePoints points = wholePoints(objectPoints, imagePoints);
+    const ImagePoints points = observedWhole(objectPoints, imagePoints);
     const double most = LIMIT*LIMIT*(double)points.pixel.size();
     return points.pixel.size() < 4 ? most : std::min(most, bestConsensus(camera, points, LIMIT, OF_ONE_POSE, Pose()).cost);
 }
@@ -245,7 +236,7 @@ std::vector<Point2d> pointsOfOnePose(const Camera& camera, const std::vector<Poi
 {
     const double NARROWEST = 2, WIDEST = 32;    // pixels: noise plus what a rough window or lens does
     const double ALL = 0.9, MORE = 1.25;        // parts: what a wider limit must gain of a wrong window, and does not of wrong points
-    const ImagePoints points = wholePoints(objectPoints, imagePoints);
+    const ImagePoints points = observedWhole(objectPoints, imagePoints);
     std::vector<Point2d> chosen;
     if (points.pixel.size() < 4)
         return chosen;

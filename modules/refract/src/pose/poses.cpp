@@ -38,6 +38,14 @@ int scatterRank(const std::vector<Point3d>& points)
     return rank;
 }
 
+ImagePoints observedWhole(const std::vector<Point3d>& objectPoints, std::vector<Point2d> imagePoints)
+{
+    for (Point2d& pixel : imagePoints)
+        if (!isWhole(pixel))
+            pixel = Point2d(1, 1)*std::numeric_limits<double>::quiet_NaN();
+    return observed(objectPoints, imagePoints);
+}
+
 int countDifferent(const ImagePoints& points)
 {
     std::set<std::array<double, 5> > different;
@@ -195,17 +203,24 @@ struct PoseErrors
 
 } // namespace
 
-double refinePose(const Camera& camera, const ImagePoints& points, Pose& pose, int iterations)
+//! @param here gets the errors there
+static double refinePose(const Camera& camera, const ImagePoints& points, int iterations, Pose& pose, SumOfSquares<6>& here)
 {
     const double count = (double)points.pixel.size();
     const LeastSquaresEnd end = { iterations, 2e-15*count, 1e-14 };         // square pixels
     Vec6d six(pose.rvec[0], pose.rvec[1], pose.rvec[2], pose.tvec[0], pose.tvec[1], pose.tvec[2]);
-    const double sum = minimizeSquares(PoseErrors{ camera, points }, end, six);
+    const double sum = minimizeSquares(PoseErrors{ camera, points }, end, six, here);
     if (std::isnan(sum))            // a start that gives some point no image is none
         return NaN;
     pose.rvec = Vec3d(six.val);
     pose.tvec = Vec3d(six.val + 3);
     return std::sqrt(sum/count);
+}
+
+double refinePose(const Camera& camera, const ImagePoints& points, Pose& pose, int iterations)
+{
+    SumOfSquares<6> here;
+    return refinePose(camera, points, iterations, pose, here);
 }
 
 Pose inCamera1(const Pose& inCamera, const Pose& extrinsics)
@@ -289,14 +304,11 @@ static std::vector<Pose> startsOf(const Camera& camera, const ImagePoints& point
 }
 
 //! False where a descent has ended as some point would lose its image: a step of Gauss-Newton would still lead on.
-static bool isMinimum(const Camera& camera, const ImagePoints& points, const Pose& pose)
+static bool isMinimum(const SumOfSquares<6>& here, size_t points)
 {
     const double NOTHING = 1e-3, ROUNDING = 1e-9;       // part of the squares; square pixels of a point
-    SumOfSquares<6> here;
     Vec6d step;
-    const Vec6d six(pose.rvec[0], pose.rvec[1], pose.rvec[2], pose.tvec[0], pose.tvec[1], pose.tvec[2]);
-    return PoseErrors{ camera, points }(six, here) &&
-           (!dampedStep(here, Vec6d(), 0, step) || expectedGain(here, step) < NOTHING*here.value + ROUNDING*(double)points.pixel.size());
+    return !dampedStep(here, Vec6d(), 0, step) || expectedGain(here, step) < NOTHING*here.value + ROUNDING*(double)points;
 }
 
 /** Maximum likelihood from a start. One of a target that is close to a window may be within that, or lead to it: from there it is moved
@@ -304,23 +316,25 @@ to the rays, which have no boundary, and away from the camera until all points h
 @param isAtBoundary gets whether the descent ended at the window, as points would leave the images beyond it: a start, no minimum */
 static PoseMinimum refineShown(const Camera& camera, const ImagePoints& points, const Pose& start, bool& isAtBoundary)
 {
+    const int ITERATIONS = 100;
+    SumOfSquares<6> here;
     PoseMinimum minimum = { start, NaN };
-    minimum.rms = refinePose(camera, points, minimum.pose);
-    isAtBoundary = false;
-    if (!std::isnan(minimum.rms) && isMinimum(camera, points, minimum.pose))
+    minimum.rms = refinePose(camera, points, ITERATIONS, minimum.pose, here);
+    isAtBoundary = std::isnan(minimum.rms) || !isMinimum(here, points.pixel.size());
+    if (!isAtBoundary)
         return minimum;
     const Pose near = nearestToRays(camera, points, start);
     for (double farther : { 1., 1.03, 1.1, 1.25 })
     {
         PoseMinimum moved = { near, NaN };
         moved.pose.tvec *= farther;
-        moved.rms = refinePose(camera, points, moved.pose);
+        moved.rms = refinePose(camera, points, ITERATIONS, moved.pose, here);
         if (std::isnan(moved.rms))
             continue;
         minimum = moved;
+        isAtBoundary = !isMinimum(here, points.pixel.size());
         break;
     }
-    isAtBoundary = !isMinimum(camera, points, minimum.pose);
     return minimum;
 }
 

@@ -55,6 +55,9 @@ std::vector<PoseMinimum> findMinima(const Camera& camera, const ImagePoints& poi
 //! Maximum likelihood from a start; the RMS, NaN if it failed, as where the start gives some point no image.
 double refinePose(const Camera& camera, const ImagePoints& points, Pose& pose, int iterations = 100);
 
+//! The points whose pixels are whole, which have rays: no halves.
+ImagePoints observedWhole(const std::vector<Point3d>& objectPoints, std::vector<Point2d> imagePoints);
+
 //! How many points were seen whole and are no copies of others, which tell nothing.
 int countDifferent(const ImagePoints& points);
 

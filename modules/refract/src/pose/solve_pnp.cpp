@@ -30,14 +30,10 @@ static void readTarget(InputArray objectPoints_, InputArray imagePoints_, int le
 
 ImagePoints readPosePoints(InputArray objectPoints_, InputArray imagePoints_, int least, int most)
 {
-    const double NaN = std::numeric_limits<double>::quiet_NaN();
     std::vector<Point3d> objectPoints;
     std::vector<Point2d> imagePoints;
     readTarget(objectPoints_, imagePoints_, least, most, objectPoints, imagePoints);
-    for (Point2d& pixel : imagePoints)
-        if (isHalf(pixel))
-            pixel = Point2d(NaN, NaN);
-    return observed(objectPoints, imagePoints);
+    return observedWhole(objectPoints, imagePoints);
 }
 
 ImagePoints readWeightedPosePoints(InputArray objectPoints_, InputArray imagePoints_, InputArray pixelCovariances, int least,
