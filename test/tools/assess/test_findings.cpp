@@ -1,7 +1,7 @@
 // This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
 // SPDX-License-Identifier: Apache-2.0
 
-// What the verdict says of a window's distance that a fit stopped at, and of what the images do not show.
+// What the verdict says of a window's distance that a fit stopped at, and of what the images do not show; the +- of a tilt.
 #include "assess/findings.hpp"
 #include "fitted_rig.hpp"
 #include "programs/run_tool.hpp"
@@ -77,4 +77,37 @@ TEST_CASE("A camera that one view joins to the others is a weak point", "[findin
     CHECK(says());
     c.options.flags |= GLASS_USE_POSES;         // each board is where it is said to be, and joins them
     CHECK_FALSE(says());
+}
+
+TEST_CASE("A tilt's +- is that of its angle", "[findings]")
+{
+    scenes::Random random(5);
+    CAPTURE(scenes::seed());
+    for (double tilt : {0., 0.02, 0.3, 0.9})
+    {
+        // Known better towards the axis than across it, or worse.
+        for (const Vec2d& std : {Vec2d(0.002, 0.01), Vec2d(0.01, 0.002)})
+        {
+            const double azimuth = random.uniform(0, 6.28);
+            const Vec3d to(std::cos(azimuth), std::sin(azimuth), 0), axis(0, 0, 1), across = axis.cross(to);
+            const Vec3d normal = std::sin(tilt)*to + std::cos(tilt)*axis, along = std::cos(tilt)*to - std::sin(tilt)*axis;
+            Fit fit;
+            fit.rig.add(RefractiveCamera::create(Matx33d(900, 0, 500, 0, 900, 400, 0, 0, 1), noArray(), GlassWindow(normal, 20, 1.5)), {});
+            const ParameterColumns at = columnsOf(fit.rig, 0);
+            fit.covariance = Mat::zeros(columnCount(fit.rig), columnCount(fit.rig), CV_64F);
+            Mat(std[0]*std[0]*along*along.t() + std[1]*std[1]*across*across.t()).copyTo(fit.covariance(Rect(at.normal, at.normal, 3, 3)));
+            const double stated = tiltStdDegrees(fit, 0)*CV_PI/180;
+            const int draws = 4000;
+            int within = 0;
+            for (int i = 0; i < draws; i++)
+            {
+                const Vec3d drawn = normalize(normal + random.normal(std[0])*along + random.normal(std[1])*across);
+                within += std::abs(std::acos(std::min(1., drawn[2])) - tilt) < stated;
+            }
+            const double share = (double)within/draws;
+            CAPTURE(tilt, std, share, stated);
+            CHECK(share > 0.65);                            // 0.683 of a normal distribution
+            CHECK(share < (tilt > 0.1 ? 0.72 : 0.8));
+        }
+    }
 }

@@ -156,6 +156,23 @@ double offsetStdOf(const Fit& fit, int camera, const GlassWindow& window)
     return lengthOf(toEigen(across*Mat(window.center)), toEigen(across*covariance*across.t())).std;
 }
 
+} // namespace
+
+double tiltStdDegrees(const Fit& fit, int camera)
+{
+    const Vec3d n = fit.rig.cameras[camera]->window().normal;
+    const int at = columnsOf(fit.rig, camera).normal;
+    const double sine = std::hypot(n[0], n[1]), tilt = std::atan2(sine, n[2]);
+    const Vec2d to = sine > 0. ? Vec2d(n[0], n[1])/sine : Vec2d(1., 0.);
+    const double turn = sine > 0. ? tilt/sine : 1.;
+    // The tilt as a rotation vector, along the tilt and across it, by the normal.
+    const Matx23d byNormal(to[0]*n[2], to[1]*n[2], -sine, -to[1]*turn, to[0]*turn, 0.);
+    const Mat covariance = Mat(byNormal)*fit.covariance(Rect(at, at, 3, 3))*Mat(byNormal).t();
+    return lengthOf(Eigen::Vector2d(tilt, 0.), toEigen(covariance)).std*180./CV_PI;
+}
+
+namespace {
+
 //! From where pixels see points without the window to where they see them with it.
 void moveOf(const RigCalibration& c, int camera, RoundWindow& result)
 {
@@ -211,7 +228,7 @@ std::string placeInWords(const RigCalibration& c, int camera)
     const GlassWindow window = c.fit.rig.cameras[camera]->window();
     if (isRound(window))
         return plusMinus(offsetOf(window), offsetStdOf(c.fit, camera, window)) + " " + c.unit;
-    return plusMinus(tiltDegrees(window), windowStd(c.fit, camera).normalDeg[0]) + " degrees";
+    return plusMinus(tiltDegrees(window), tiltStdDegrees(c.fit, camera)) + " degrees";
 }
 
 } // namespace tools

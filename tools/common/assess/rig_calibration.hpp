@@ -123,7 +123,11 @@ struct RoundWindow
 //! None: the window is no such one.
 std::optional<RoundWindow> roundWindowOf(const RigCalibration& calibration, int camera);
 
-/** Where a window is, in words: "tilted by 3.21 +- 0.02 degrees", or that of a dome. The +- of a tilt is that of the normal. */
+/** The +- of tiltDegrees() of a flat window: that of the normal towards the optical axis. What is across it says how well the direction
+of the tilt is known; of a tilt that is hardly one both count. */
+double tiltStdDegrees(const Fit& fit, int camera);
+
+//! Where a window is, in words: "3.21 +- 0.02 degrees" of tilt, or how far the centre of a dome is from the camera.
 std::string placeInWords(const RigCalibration& calibration, int camera);
 
 } // namespace tools

@@ -101,7 +101,7 @@ std::string windowSentence(const RigCalibration& c, int k)
         return which + (round->shape == "dome" ? " has its centre " : " has its axis ") + round->offsetWords(c.unit)
             + (round->shape == "dome" ? "; in its centre it would not refract." : ".");
     const double tilt = tiltDegrees(window);
-    return which + format(" is tilted by %.2f°, known to ±%.2g°.", tilt, windowStd(c.fit, k).normalDeg[0]);
+    return which + format(" is tilted by %.2f°, known to ±%.2g°.", tilt, tiltStdDegrees(c.fit, k));
 }
 
 //! "a camera behind a flat window", "2 cameras behind 2 flat windows", "3 cameras in a dome".

@@ -134,7 +134,7 @@ static std::vector<SummaryRow> normalRows(const RigCalibration& c)
         return format("(%.5f, %.5f, %.5f)", n[0], n[1], n[2]);
     }));
     rows.push_back(row(c, "tilt against the optical axis, deg",
-                       [&](int k) { return format("%.3f", tiltDegrees(window(k))); }));
+                       [&](int k) { return plusMinus(tiltDegrees(window(k)), tiltStdDegrees(c.fit, k)); }));
     rows.push_back(row(c, "normal +- (two principal), deg", [&](int k) {
         const std::vector<double> std = deviation(k).normalDeg;
         return format("%.2g, %.2g", std[0], std[1]);

@@ -80,6 +80,7 @@ void addPlace(const RigCalibration& c, int camera, Json& json)
     json.set("normal", listOf(window.normal));
     json.set("normal_std_deg", std.normalDeg);
     json.set("tilt_deg", tiltDegrees(window));
+    json.set("tilt_std_deg", tiltStdDegrees(c.fit, camera));
     json.set("distance", !hasDifferentMedia(window) && !(std.distance > 0.) ? Json() : estimate(window.distance, std.distance));
     if (window.shape == WINDOW_BENT)
     {
