@@ -162,10 +162,16 @@ void findSteepWindows(int rigs, double outliers)
 
 TEST_CASE("A steep window is found from one that looks straight ahead, where the lens is estimated too", "[calibrate]")
 {
-    findSteepWindows(trials(8), 0);
+    findSteepWindows(trials(3), 0);
 }
 
 TEST_CASE("A steep window is found among wrong points, where the lens is estimated too", "[calibrate]")
 {
-    findSteepWindows(trials(6), 0.1);
+    findSteepWindows(trials(2), 0.1);
+}
+
+TEST_CASE("Steep windows are found from straight ones, where the lens is estimated too: forty rigs", "[.][calibrate]")
+{
+    SECTION("right points") { findSteepWindows(trials(20), 0); }
+    SECTION("wrong points among them") { findSteepWindows(trials(20), 0.1); }
 }
