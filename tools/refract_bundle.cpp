@@ -237,14 +237,15 @@ BundleFindings judged(const Options& o, const Calibration& file, const Matches& 
                       const BundleStart& start, const BundleAdjustment& adjustment)
 {
     const double knownSigma = knownNoise(o, file, matches);
-    BundleFindings findings = findingsOf(start, lengths, adjustment, knownSigma, o.maxRms);
+    const auto adjust = [&](const BundleStart& from) { return adjustBundle(from, matches, lengths, o.robust); };
+    BundleFindings findings = findingsOf(start, lengths, adjustment, adjust, knownSigma, o.maxRms);
     const std::string exchange = findings.contradictions.empty() ? "" : exchangedCameras(start, matches, lengths, o.robust, knownSigma);
     if (!exchange.empty())
     {
         findings.contradictions = {exchange};
         return findings;
     }
-    checkPlaces(start, [&](const BundleStart& freed) { return adjustBundle(freed, matches, lengths, o.robust); }, findings);
+    checkPlaces(start, adjust, findings);
     explain(o, file, matches, lengths, start, adjustment, findings);
     return findings;
 }

@@ -34,7 +34,7 @@ inline tools::RigData dataOf(const tools::RigModel& rig)
 }
 
 //! Two cameras with known lenses, eight pairs; what is known of the given values.
-inline tools::RigCalibration calibratedPairs(const tools::GivenStd& std, unsigned seed, double sigma, double square)
+inline tools::RigCalibration calibratedPairs(const tools::GivenStd& std, unsigned seed, double sigma, double square, int flags = 0)
 {
     scenes::Random random(seed);
     tools::RigModel rig = paperRig(2);
@@ -61,7 +61,7 @@ inline tools::RigCalibration calibratedPairs(const tools::GivenStd& std, unsigne
         rig.known[k].window = rig.cameras[k]->window();
     }
     rig.targetCovariance = tools::targetCovarianceOf(data, rig, std);
-    tools::RigCalibration c = fittedRig(rig, data, square);
+    tools::RigCalibration c = fittedRig(rig, data, square, flags);
     c.options = options;
     return c;
 }

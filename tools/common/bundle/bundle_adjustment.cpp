@@ -203,7 +203,9 @@ void setNoise(const BundleStart& start, const GivenLengths& lengths, double squa
     const double ofPrior = squaredPrior(start, fit.rig);
     const int free = (int)(estimatedWindowParameters(fit).size() + estimatedRigParameters(fit).size());
     fit.dof = 2.*result.usedPixels + lengthCount + countKnown(start) - 3.*result.answers() - unknownPoses - free;
-    const double left = fit.dof - ofLengths - ofPrior;
+    result.squaredPixels = squaredPixels;
+    result.squaredKnown = ofLengths + ofPrior;
+    const double left = fit.dof - result.squaredKnown;
     fit.sigma = std::sqrt(squaredPixels/std::max(left, 1.));
 }
 

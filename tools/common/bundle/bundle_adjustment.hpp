@@ -20,6 +20,8 @@ struct BundleAdjustment
     std::vector<uchar> status;          //!< of the same, as Measurement::status
     std::vector<std::vector<uchar>> used;   //!< per camera, per point
     int usedPixels = 0, seenPixels = 0; //!< of points that two cameras saw
+    double squaredPixels = 0.;          //!< px^2, of what is used, each over its relative variance
+    double squaredKnown = 0.;           //!< of lengths and what was known, over their variances
 
     int answers() const;
     std::vector<int> outliers() const;  //!< points with a pixel that no point explains

@@ -140,48 +140,6 @@ bool isWeak(const EstimatedParameter& p, const RigModel& rig)
     return isOf(at.wedge, at.curvature - at.wedge) ? p.std > 3*ARC_MINUTE : p.std > 0.25*p.value;
 }
 
-std::string nameOf(const RigModel& rig, int column)
-{
-    for (int c = 0; c < (int)rig.cameras.size(); c++)
-    {
-        const ParameterColumns at = columnsOf(rig, c);
-        if (column >= at.end)
-            continue;
-        const auto isOf = [&](int first) { return at.has(first) && column >= first && column < first + 3; };
-        return format("camera %d's ", c + 1) + (isOf(at.normal) ? "normal" : isOf(at.center) ? "centre" : isOf(at.axis) ? "axis"
-                                                                : rig.cameras[c]->parameterNames()[column - at.lens]);
-    }
-    const int place = column - extrinsicsColumn(rig, 1);
-    return std::string(place % 6 < 3 ? "R" : "T") + (place < 6 ? "" : std::to_string(place/6 + 2));
-}
-
-/* What was known before and what is found now differ by x - x0, which has the covariance C0 - C. */
-void findContradictions(const BundleStart& start, const Fit& fit, BundleFindings& findings)
-{
-    const double MANY = 5.;
-    const VectorXd values = parametersOf(fit.rig), known = parametersOf(start.rig);
-    const int places = extrinsicsColumn(fit.rig, 1);
-    ParameterColumns at;
-    double worst = 0.;
-    int column = -1;
-    for (int i = 0; i < start.covariance.rows; i++)
-    {
-        const double before = start.covariance.at<double>(i, i), now = fit.covariance.at<double>(i, i);
-        if (!(before > 0) || (i < places && followsOthers(windowOfColumn(fit.rig, i, at), at, i)))
-            continue;
-        const double change = std::abs(values[i] - known[i]);
-        const double ratio = change/std::sqrt(std::max(before - now, 1e-2*before));
-        if (ratio > worst)
-        {
-            worst = ratio;
-            column = i;
-        }
-    }
-    if (worst > MANY)
-        findings.contradictions.push_back(nameOf(fit.rig, column) + format(
-            " is %.0f standard deviations from what the start says: it has changed since, or a given value is wrong", worst));
-}
-
 /* A start is good to some degrees and per cent. What fits far from it may be another minimum, of matches that are not what they are given
 for. What is known of R and T has its contradictions. */
 void findFarSteps(const BundleStart& start, BundleFindings& findings)
@@ -272,8 +230,8 @@ std::string BundleFindings::verdict() const
     return weak.empty() ? maxRms > 0. ? "PASS" : "USABLE" : "USABLE, WITH WEAK POINTS";
 }
 
-BundleFindings findingsOf(const BundleStart& start, const GivenLengths& lengths, const BundleAdjustment& adjustment, double knownSigma,
-                          double maxRms)
+BundleFindings findingsOf(const BundleStart& start, const GivenLengths& lengths, const BundleAdjustment& adjustment,
+                          const Readjust& adjust, double knownSigma, double maxRms)
 {
     const Fit& fit = adjustment.fit;
     BundleFindings findings;
@@ -286,7 +244,9 @@ BundleFindings findingsOf(const BundleStart& start, const GivenLengths& lengths,
     const double FEW = 60.;
     if (fit.dof < FEW)
         findings.weak.push_back("so few data (every +- may be 1.4 times larger)");
-    findContradictions(start, fit, findings);
+    const std::string contradiction = contradictionOf(start, adjustment, adjust);
+    if (!contradiction.empty())
+        findings.contradictions.push_back(contradiction);
     findFarSteps(start, findings);
     const double NOISIER = 5., NO_DETECTOR = 2.;     // px
     const double MOST_LEFT_OUT = 1./3.;
@@ -306,7 +266,7 @@ BundleFindings findingsOf(const BundleStart& start, const GivenLengths& lengths,
     return findings;
 }
 
-void checkPlaces(const BundleStart& start, const std::function<BundleAdjustment(const BundleStart&)>& adjust, BundleFindings& findings)
+void checkPlaces(const BundleStart& start, const Readjust& adjust, BundleFindings& findings)
 {
     const double MANY = 5.;
     if (start.placeOption.empty())

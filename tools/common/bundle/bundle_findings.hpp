@@ -47,13 +47,18 @@ struct BundleFindings
     std::string verdict() const;
 };
 
-//! @param knownSigma of a pixel coordinate; not above 0: unknown
-BundleFindings findingsOf(const BundleStart& start, const GivenLengths& lengths, const BundleAdjustment& adjustment, double knownSigma,
-                          double maxRms);
+//! The same observations adjusted from another start. May throw Failure.
+using Readjust = std::function<BundleAdjustment(const BundleStart& start)>;
 
-/** What was said of where windows are, if that was not the file: against what the matches tell without it.
-@param adjust the adjustment from another start; may throw Failure */
-void checkPlaces(const BundleStart& start, const std::function<BundleAdjustment(const BundleStart&)>& adjust, BundleFindings& findings);
+//! What was known of a number and is contradicted by the matches, a sentence; empty: nothing is.
+std::string contradictionOf(const BundleStart& start, const BundleAdjustment& adjustment, const Readjust& adjust);
+
+//! @param knownSigma of a pixel coordinate; not above 0: unknown
+BundleFindings findingsOf(const BundleStart& start, const GivenLengths& lengths, const BundleAdjustment& adjustment,
+                          const Readjust& adjust, double knownSigma, double maxRms);
+
+//! What was said of where windows are, if that was not the file: against what the matches tell without it.
+void checkPlaces(const BundleStart& start, const Readjust& adjust, BundleFindings& findings);
 
 /** Which of what may change in a rig explains a contradiction, each freed alone beside what is free: the best, and those that are
 as good, with "or". Empty: none does.

@@ -69,8 +69,10 @@ std::string exchangedCameras(const BundleStart& start, const Matches& matches, c
     for (const Exchange& exchange : exchangesOf(start, thinned(matches, lengths)))
         try
         {
-            const BundleAdjustment adjustment = adjustBundle(start, exchange.matches, lengths, robust, ENOUGH_ITERATIONS);
-            if (findingsOf(start, lengths, adjustment, knownSigma, 0.).contradictions.empty())
+            const auto adjust = [&](const BundleStart& from) {
+                return adjustBundle(from, exchange.matches, lengths, robust, ENOUGH_ITERATIONS); };
+            const BundleAdjustment adjustment = adjust(start);
+            if (findingsOf(start, lengths, adjustment, adjust, knownSigma, 0.).contradictions.empty())
                 return format("the observations of cameras %d and %d are exchanged: taken as each other's, they fit near the start with "
                               "%.3g px of noise; exchange their columns in the table (of --wand their images), or the two cameras of the "
                               "start", exchange.a + 1, exchange.b + 1, adjustment.fit.sigma);

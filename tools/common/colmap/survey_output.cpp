@@ -301,8 +301,9 @@ SurveyResult adjustColmap(const SurveyOptions& options, const BundleStart& start
     for (int view = 0; view < (int)result.survey.views.size(); view++)
         if (!result.adjustment.hasPose(view))
             result.survey.leaveOut(view);
-    result.findings = findingsOf(start, result.start.lengths, result.adjustment.bundle, options.pixelSigma, options.maxRms);
-    checkPlaces(start, [&](const BundleStart& freed) { return adjusted(freed).bundle; }, result.findings);
+    const auto bundle = [&](const BundleStart& from) { return adjusted(from).bundle; };
+    result.findings = findingsOf(start, result.start.lengths, result.adjustment.bundle, bundle, options.pixelSigma, options.maxRms);
+    checkPlaces(start, bundle, result.findings);
     result.findings.scale = scaleText(result.start, result.adjustment);
     if (result.start.isScaleOfWindow && !(result.adjustment.scaleStd <= VAGUE))
         result.findings.weak.insert(result.findings.weak.begin(), "the scale, which the window alone tells: give --lengths or --positions");
