@@ -89,14 +89,17 @@ TEST_CASE("Rigs of one to four cameras from crude starts", "[rig_glass][slow]")
 
 TEST_CASE("Rigs of one to eight cameras from crude starts", "[.crude]")
 {
-    const int rigs = trials(100);
+    const int rigs = trials(25);
+    int runs = 0, right = 0;
     for (const std::vector<int>& windows : { std::vector<int>{ 0 }, { 0, 1 }, { 0, 0 }, { 0, 1, 2, 3 }, { 0, 0, 1, 1 },
                                              { 0, 0, 0, 0 }, { 0, 1, 2, 3, 4, 5, 6, 7 }, { 0, 0, 0, 0, 0, 0, 0, 0 } })
     {
         const Tally tally = tallyOf(windows, rigs);
         CHECK(tally.wrong == 0);
-        CHECK(tally.same + tally.better >= 0.99*tally.runs);
+        runs += tally.runs;
+        right += tally.same + tally.better;
     }
+    CHECK(right >= 0.99*runs);
 }
 
 namespace {

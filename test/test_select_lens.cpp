@@ -580,6 +580,7 @@ TEST_CASE("Lenses that the data choose: errors over what is stated", "[.lens-cho
     for (const int count : { 3, 6, 14, 25 })
         DYNAMIC_SECTION(count << " images")
         {
+            int refused = 0;
             for (const TrueLens& lens : lenses)
             {
                 Stated result;
@@ -596,7 +597,8 @@ TEST_CASE("Lenses that the data choose: errors over what is stated", "[.lens-cho
                 CAPTURE(lens.name);
                 CHECK(std::abs(ratio - 1) < 0.1 + 4*std::sqrt(1./(2*TRIALS)));
                 CHECK(result.worst < 4.5);
-                CHECK(result.refused <= 0.1*TRIALS);
+                refused += result.refused;
             }
+            CHECK(refused <= 0.05*TRIALS*lenses.size());
         }
 }

@@ -14,9 +14,11 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 /** Of quantities of mean 0 that all have this standard deviation, as their estimates have the covariance C by themselves: these have
-C + w^2. */
-double largestLikelyWidth(const MatrixXd& C, const VectorXd& estimates, double lessLikely)
+C + w^2. The largest that is hardly less likely than the likeliest one: that is 0 for what noise explains, and would say that
+coefficients are exactly 0, which nobody knows. */
+double largestLikelyWidth(const MatrixXd& C, const VectorXd& estimates)
 {
+    const double LESS_LIKELY = 0.5;                         // log likelihood
     const double LEAST = 1e-4, MOST = 1e4, STEP = 1.05;     // px
     const SymmetricEigen spectrum(C);
     const VectorXd along = transposeTimesVector(spectrum.vectors, estimates);
@@ -32,7 +34,7 @@ double largestLikelyWidth(const MatrixXd& C, const VectorXd& estimates, double l
         widths.push_back(width);
         unlikelihoods.push_back(sum);
     }
-    const double most = *std::min_element(unlikelihoods.begin(), unlikelihoods.end()) + 2*lessLikely;
+    const double most = *std::min_element(unlikelihoods.begin(), unlikelihoods.end()) + 2*LESS_LIKELY;
     size_t i = widths.size() - 1;
     while (unlikelihoods[i] > most)
         i--;
@@ -95,7 +97,7 @@ std::vector<LeftOut> leftOutOf(const Problem& problem, int camera, const std::ve
 
 } // namespace
 
-std::vector<Mat> priorsOfLeftOut(const Problem& problem, const std::vector<std::vector<bool> >& isLeftOut, double lessLikely)
+std::vector<Mat> priorsOfLeftOut(const Problem& problem, const std::vector<std::vector<bool> >& isLeftOut)
 {
     const Information information = informationOf(problem, false);
     const MatrixXd half = pseudoInverseRoot(information);
@@ -125,7 +127,7 @@ std::vector<Mat> priorsOfLeftOut(const Problem& problem, const std::vector<std::
                 for (int c = 0; c < n; c++)
                     C(r, c) = variance*some[r].pixels*some[c].pixels*some[r].half.dot(some[c].half);
             }
-            const double width = n > 0 ? largestLikelyWidth(C, estimates, lessLikely) : 0;
+            const double width = n > 0 ? largestLikelyWidth(C, estimates) : 0;
             for (const LeftOut& parameter : some)
                 prior(parameter.index, parameter.index) = std::pow(width/parameter.pixels, 2);
         }

@@ -14,10 +14,8 @@ image's corner, which the data tell (empirical Bayes: the evidence of MacKay, Ba
 radius (k) have one width, the tangential ones (p) another.
 @param problem where the choice was fitted; what was left out is free
 @param isLeftOut of each parameter of each camera's lens
-@param lessLikely the width is the largest whose log likelihood is so far below that of the likeliest. The likeliest is 0 for what
-noise explains, and says that coefficients are exactly 0, which nobody knows
 @return of each camera L x L, CV_64F: NaN for what was not left out */
-std::vector<Mat> priorsOfLeftOut(const Problem& problem, const std::vector<std::vector<bool> >& isLeftOut, double lessLikely);
+std::vector<Mat> priorsOfLeftOut(const Problem& problem, const std::vector<std::vector<bool> >& isLeftOut);
 
 }} // namespace
 

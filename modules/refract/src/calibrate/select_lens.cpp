@@ -103,8 +103,7 @@ public:
             for (size_t i = 0; i < isChosen.size(); i++)
                 isLeftOut.back()[i] = isLeftOut.back()[i] && !isChosen[i];
         }
-        const double LESS_LIKELY = 0.5;         // in what no image shows, a wider prior than the likeliest one bends without limit
-        return cv::refract::priorsOfLeftOut(problem, isLeftOut, tellsBeyond() ? LESS_LIKELY : 0);
+        return cv::refract::priorsOfLeftOut(problem, isLeftOut);
     }
 
 private:
