@@ -11,6 +11,7 @@
 #include "export/export_files.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <map>
@@ -118,7 +119,8 @@ CentralCamera bestCentralCamera(const Options& options, const cv::Ptr<cv::refrac
     const double NEARLY = 1.1;
     const CentralCamera plain = fitCentralCamera(camera, range, isKnown(5) ? 5 : 4, name);
     const CentralCamera rational = fitCentralCamera(camera, range, 8, name);
-    return plain.error.rms <= NEARLY*rational.error.rms ? plain : rational;
+    const bool rationalDiverged = std::isnan(rational.error.rms);
+    return rationalDiverged || plain.error.rms <= NEARLY*rational.error.rms ? plain : rational;
 }
 
 //! With the size of each image.
@@ -147,6 +149,7 @@ CentralRig centralRigOf(const Options& options, const cv::Vec2d& range, const Co
         const std::string name = format("camera%d", (int)c + 1);
         progress.at(name);
         const CentralCamera central = bestCentralCamera(options, camera, range, name);
+        requireNear(central, name);
         rig.cameras.push_back({name, camera, pose, central, central.pose*pose});
         progress.step();
     }

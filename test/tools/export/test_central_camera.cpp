@@ -100,6 +100,24 @@ TEST_CASE("A pane straight before the camera moves it along the axis, by what Sn
     CHECK(central.error.max < 0.01);
 }
 
+TEST_CASE("A lens without a fisheye's angles is no central camera of one that has them", "[tools][export]")
+{
+    // What a fit is that has diverged: a fisheye of over 180 degrees in a dome, as a polynomial of a plane.
+    const Ptr<RefractiveCamera> camera = RefractiveCamera::createFisheye(Matx33d(242, 0, 318, 0, 241, 325, 0, 0, 1),
+        Vec4d(0.02, -0.01, 0.002, 0), GlassWindow::dome(Vec3d(-3, 2, 4), 60, 6, 1.49, 1.333));
+    camera->setImageSize(Size(640, 640));
+    const Vec2d range(700, 1800);
+    for (int coefficients : {4, 8})
+        CHECK_THROWS_WITH(requireNear(fitCentralCamera(camera, range, coefficients, "camera1"), "camera1"),
+                          Catch::Contains("camera1") && Catch::Contains("too wide") && Catch::Contains("--to=opencv, ros or colmap"));
+    const CentralCamera fisheye = fitCentralCamera(camera, range, 0, "camera1");
+    CHECK_NOTHROW(requireNear(fisheye, "camera1"));
+    // Grazing rays meet z = 1800 a hundred metres away: lengths are those of a scene.
+    CHECK(fisheye.error.max < 2);
+    CHECK(fisheye.error.lengthMax < 2*fisheye.error.max/240*2*range[1]);
+    CHECK(fisheye.error.lengthRms > 0.1*fisheye.error.rms/240*range[0]);
+}
+
 TEST_CASE("A range before or in the window has no central camera", "[tools][export]")
 {
     CHECK_THROWS_WITH(fitCentralCamera(cameraBehind(GlassWindow(Vec3d(0, 0, 1), 25, 1.5, 60)), Vec2d(10, 50), 8, "camera1"),

@@ -7,6 +7,7 @@
 #include <ceres/ceres.h>
 #include <opencv2/core.hpp>
 #include <cmath>
+#include <limits>
 
 namespace tools {
 
@@ -82,7 +83,8 @@ Ptr<RefractiveCamera> startOf(const Ptr<RefractiveCamera>& camera, int coefficie
 
 SeenPoints testPoints(const Ptr<RefractiveCamera>& camera, const cv::Vec2d& range) { return seenPoints(camera, range, 40, 30, 12); }
 
-void fit(const SeenPoints& sample, CentralCamera& central, const std::string& name)
+//! @return whether it found a minimum
+bool fit(const SeenPoints& sample, CentralCamera& central)
 {
     Vec3d rvec, tvec;
     Mat lens = central.camera->lensParameters().clone();
@@ -96,10 +98,10 @@ void fit(const SeenPoints& sample, CentralCamera& central, const std::string& na
     ceres::Solver::Summary summary;
     ceres::Solve(options, &problem, &summary);
     if (!summary.IsSolutionUsable())
-        throw Failure("no central camera comes near " + name + " over the whole image: its lens is too wide for this "
-                      "lens model, or give a range farther from the window");
+        return false;
     central.camera->setLensParameters(lens);
     central.pose = transformOf(rvec, tvec);
+    return true;
 }
 
 } // namespace
@@ -152,29 +154,34 @@ void requireEnough(const SeenPoints& seen, const cv::Vec2d& range, const std::st
                                  range[0], range[1]));
 }
 
-CentralError errorOf(const SeenPoints& sample, const CentralCamera& central)
+CentralError errorOf(const SeenPoints& sample, const cv::Vec2d& range, const CentralCamera& central)
 {
+    const double WITHIN = 2;        // times the far end: all that a lens of 120 degrees sees there
     std::vector<Point2d> seen;
     std::vector<Vec3d> origins, directions;
     cv::refract::refractiveProjectPoints(sample.points, central.pose.R, central.pose.T, central.camera, seen);
     cv::refract::refractiveUnprojectPoints(sample.pixels, origins, directions, central.camera);
     CentralError e;
     const auto n = (double)sample.points.size();
+    int near = 0;
     const cv::Matx33d back = central.pose.R.t();
     for (size_t i = 0; i < sample.points.size(); i++)
     {
-        // Where the ray that the central camera takes the pixel for passes the depth of the point.
-        const Vec3d centre = central.pose.inverse(origins[i]), along = back*directions[i], X = sample.points[i];
-        const double length = cv::norm(centre + along*((X[2] - centre[2])/along[2]) - X);
         const double px = cv::norm(seen[i] - sample.pixels[i]);
         // NaN counts as the worst there can be
         e.max = px <= e.max ? e.max : px;
-        e.lengthMax = length <= e.lengthMax ? e.lengthMax : length;
         e.rms += px*px/n;
-        e.lengthRms += length*length/n;
+        const Vec3d X = sample.points[i];
+        if (cv::norm(X) > WITHIN*range[1])
+            continue;
+        // From the ray that the central camera takes the pixel for.
+        const double length = cv::norm((X - central.pose.inverse(origins[i])).cross(cv::normalize(back*directions[i])));
+        e.lengthMax = length <= e.lengthMax ? e.lengthMax : length;
+        e.lengthRms += length*length;
+        near++;
     }
     e.rms = std::sqrt(e.rms);
-    e.lengthRms = std::sqrt(e.lengthRms);
+    e.lengthRms = std::sqrt(e.lengthRms/near);
     return e;
 }
 
@@ -185,15 +192,28 @@ CentralCamera fitCentralCamera(const Ptr<RefractiveCamera>& camera, const cv::Ve
     requireEnough(fitted, range, name);
     CentralCamera central;
     central.camera = startOf(camera, coefficients);
-    fit(fitted, central, name);
-    central.error = errorOf(testPoints(camera, range), central);        // elsewhere, too
+    if (fit(fitted, central))
+        central.error = errorOf(testPoints(camera, range), range, central);     // elsewhere, too
+    else
+        central.error.rms = central.error.max = std::numeric_limits<double>::quiet_NaN();
     return central;
+}
+
+void requireNear(const CentralCamera& central, const std::string& name)
+{
+    const cv::Size size = central.camera->imageSize();
+    if (central.error.max <= std::hypot(size.width, size.height))
+        return;                     // not, too, if it is NaN
+    const bool isFisheye = central.camera->lensModel() == "fisheye";
+    throw Failure("no central camera comes near " + name + " over the whole image: its lens is too wide for "
+                  + (isFisheye ? "the fisheye model" : "a model without a fisheye's angles; take one with them (--to=opencv, ros or "
+                     "colmap, with --coefficients=0)") + ", or give a range farther from the window");
 }
 
 CentralCamera centralCamera(const Ptr<RefractiveCamera>& camera, const cv::Vec2d& range)
 {
     CentralCamera central = { camera->clone(), RigidTransform(), CentralError() };
-    central.error = errorOf(testPoints(camera, range), central);
+    central.error = errorOf(testPoints(camera, range), range, central);
     return central;
 }
 

@@ -33,7 +33,7 @@ shifts the apparent centre of projection, a port in water also changes the focal
 struct CentralError
 {
     double rms = 0, max = 0;                //!< px
-    double lengthRms = 0, lengthMax = 0;    //!< in the plane of a point that is parallel to the image, unit of the rig
+    double lengthRms = 0, lengthMax = 0;    //!< of points from their pixels' rays, within twice the far end; unit of the rig
 };
 
 struct CentralCamera
@@ -43,14 +43,18 @@ struct CentralCamera
     CentralError error;
 };
 
-CentralError errorOf(const SeenPoints& seen, const CentralCamera& central);
+CentralError errorOf(const SeenPoints& seen, const cv::Vec2d& range, const CentralCamera& central);
 
-/** @param camera with its image size
+/** Its error is NaN, or larger than the image, where the lens model cannot do it.
+@param camera with its image size
 @param range z in the frame of the camera, near and far, both finite
 @param coefficients of OpenCV's model; 0: those of cv::fisheye
 @param name of the camera, for a sentence */
 CentralCamera fitCentralCamera(const cv::Ptr<cv::refract::RefractiveCamera>& camera, const cv::Vec2d& range, int coefficients,
                                const std::string& name);
+
+//! Throws Failure if the fit of the camera of that name has diverged: its error is NaN, or larger than the image.
+void requireNear(const CentralCamera& central, const std::string& name);
 
 //! A camera without a window is its own central camera. @param camera with its image size
 CentralCamera centralCamera(const cv::Ptr<cv::refract::RefractiveCamera>& camera, const cv::Vec2d& range);
