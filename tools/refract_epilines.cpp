@@ -8,6 +8,7 @@
 #include "console/file_output.hpp"
 #include "console/images.hpp"
 #include "console/csv.hpp"
+#include "console/numbers.hpp"
 #include "console/table.hpp"
 #include "report/drawing.hpp"
 #include "target/target_search.hpp"
@@ -122,6 +123,19 @@ std::string contradictionOf(const Calibration& rig, const Target& target, const 
         + (cause.empty() ? "are the images of one moment, of this rig, and in its cameras' order?" : "what explains them: " + cause);
 }
 
+//! A typing error in a file of points makes a curve that is nowhere.
+void warnOfPointsOutside(const std::vector<Point2d>& points, const cv::Mat& image, const Options& options, const Command& command)
+{
+    const cv::Rect2d area(-0.5, -0.5, image.cols, image.rows);
+    std::vector<std::string> outside;
+    for (size_t i = 0; i < points.size(); i++)
+        if (!area.contains(points[i]))
+            outside.push_back(format("%zu (%g %g)", i + 1, points[i].x, points[i].y));
+    if (!outside.empty())
+        command.warn(format("'%s': %zu of %zu points are outside '%s', which is %s: ", options.points.c_str(), outside.size(),
+                            points.size(), options.image1.c_str(), sizeText(image.size()).c_str()) + listed(outside));
+}
+
 void addOptions(OptionParser& parser, Options& options)
 {
     parser.add("calib.yml", options.calibration, "of a stereo pair, what refract_calib wrote").required();
@@ -163,7 +177,10 @@ int refract_epilines_main(int argc, char** argv)
             contradiction = contradictionOf(rig, target, points, partners);
         }
         else
+        {
             points = readPixels(options.points);
+            warnOfPointsOutside(points, image1, options, command);
+        }
 
         const cv::Vec2d depth = options.depth.empty() ? usualDepthRange(rig, points, partners)
                                                       : parseDepthRange(options.depth, "--depth");

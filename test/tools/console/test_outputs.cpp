@@ -27,10 +27,10 @@ TEST_CASE("A lock is of one at a time, and one that was left behind is of nobody
     const std::string name = folder / "out.lock";
     std::ofstream(name) << "";                  // as a run that was killed leaves it
     {
-        const std::unique_ptr<FileLock> mine = FileLock::tryOnce(name);
+        const std::unique_ptr<FileLock> mine = FileLock::tryOnce(name, name);
         REQUIRE(mine);
-        CHECK_FALSE(FileLock::tryOnce(name));   // of another open file, as that of another process
+        CHECK_FALSE(FileLock::tryOnce(name, name));   // of another open file, as that of another process
     }
     CHECK_FALSE(std::ifstream(name).good());
-    CHECK(FileLock::tryOnce(name));
+    CHECK(FileLock::tryOnce(name, name));
 }

@@ -243,6 +243,30 @@ TEST_CASE("refract_epilines shows that the partners lie on their curves", "[tool
     }
 }
 
+TEST_CASE("refract_epilines names the points that are outside the image", "[tools][epilines]")
+{
+    const TemporaryFolder folder;
+    writeFile(folder / "points.txt", "100 100\n9000 9000\n-0.4 1023.4\n");
+    const ToolResult result = runTool("refract_epilines " + STEREO + "/truth.yml " + image("measure1/z600_1") + " "
+        + image("measure2/z600_1") + " --points=" + (folder / "points.txt") + " --out=" + (folder / "curves.png"));
+    CAPTURE(result.err);
+    CHECK(result.code == 0);
+    CHECK(mentions(result.err, "1 of 3 points are outside"));
+    CHECK(mentions(result.err, "2 (9000 9000)"));
+    CHECK(mentions(result.err, "1280x1024"));
+}
+
+TEST_CASE("An output where no file can be made is named as the user named it", "[tools][outputs]")
+{
+    const TemporaryFolder folder;
+    const ToolResult result = runTool("refract_epilines " + STEREO + "/truth.yml " + image("measure1/z600_1") + " "
+        + image("measure2/z600_1") + TARGET + " --out=/proc/x.png");
+    CAPTURE(result.err);
+    CHECK(result.code == 1);
+    CHECK(mentions(result.err, "'/proc/x.png'"));
+    CHECK_FALSE(mentions(result.err, ".lock"));
+}
+
 TEST_CASE("refract_undistort and refract_epilines refuse with one sentence and write nothing", "[tools]")
 {
     const TemporaryFolder folder;

@@ -31,7 +31,7 @@ std::unique_ptr<FileLock> lockOf(const std::string& history)
     const int SECONDS = 300, TRIES_A_SECOND = 10;
     for (int i = 0; i < SECONDS*TRIES_A_SECOND; i++)
     {
-        if (std::unique_ptr<FileLock> lock = FileLock::tryOnce(history + ".lock"))
+        if (std::unique_ptr<FileLock> lock = FileLock::tryOnce(history + ".lock", history))
             return lock;
         std::this_thread::sleep_for(std::chrono::milliseconds(1000/TRIES_A_SECOND));
     }

@@ -75,7 +75,7 @@ static bool isStillNamed(int descriptor, const std::string& file)
     return fstat(descriptor, &opened) == 0 && stat(file.c_str(), &named) == 0 && opened.st_ino == named.st_ino;
 }
 
-std::unique_ptr<FileLock> FileLock::tryOnce(const std::string& file)
+std::unique_ptr<FileLock> FileLock::tryOnce(const std::string& file, const std::string& kept)
 {
     const int TRIES = 10;
     for (int i = 0; i < TRIES; i++)
@@ -84,7 +84,8 @@ std::unique_ptr<FileLock> FileLock::tryOnce(const std::string& file)
         if (descriptor < 0 && errno == EACCES)      // another user left it
             descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC);
         if (descriptor < 0)
-            throw Failure("cannot write '" + file + "', which keeps two runs at once apart: " + std::strerror(errno));
+            throw Failure("cannot write '" + kept + "': no file can be made beside it, which keeps two runs at once apart: "
+                          + std::strerror(errno));
         const bool isTaken = flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;      // else: locked, or no locks here
         if (!isTaken && isStillNamed(descriptor, file))
             return std::unique_ptr<FileLock>(new FileLock(file, descriptor));
@@ -311,7 +312,8 @@ void keepFromOthers(const Output& output, const std::string& name)
     static std::map<std::string, std::unique_ptr<FileLock>> kept;       // to the end of the process
     std::unique_ptr<FileLock>& lock = kept[name];
     if (!lock)
-        lock = FileLock::tryOnce((fs::path(name).parent_path()/("." + fs::path(name).filename().string() + ".lock")).string());
+        lock = FileLock::tryOnce((fs::path(name).parent_path()/("." + fs::path(name).filename().string() + ".lock")).string(),
+                                 output.path);
     if (!lock)
         throw Failure(output.option + ": another run is about to write '" + output.path + "': wait until it has ended, or name another "
                       "file");

@@ -19,7 +19,8 @@ class FileLock
 {
 public:
     //! Null: another process has it. A file system without locks keeps nobody apart. Throws Failure if there can be no such file.
-    static std::unique_ptr<FileLock> tryOnce(const std::string& file);
+    //! @param kept what it keeps for one, as the user named it
+    static std::unique_ptr<FileLock> tryOnce(const std::string& file, const std::string& kept);
     ~FileLock();
     FileLock(const FileLock&) = delete;
     FileLock& operator=(const FileLock&) = delete;
