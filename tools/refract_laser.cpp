@@ -115,8 +115,13 @@ public:
         if (off == off_.end())
             throw Failure("no image of --laser-off has the name of '" + path + "'");
         const cv::Mat without = readImage(off->second);
-        if (without.size() != image.size() || without.type() != image.type())
-            throw Failure("'" + off->second + "' and '" + path + "' differ in size or kind: take both with the same camera");
+        const std::string both = "'" + off->second + "' and '" + path + "' differ in ";
+        if (without.size() != image.size())
+            throw Failure(both + "size (" + sizeText(without.size()) + ", " + sizeText(image.size()) + "): take both with the same camera");
+        if (without.channels() != image.channels())
+            throw Failure(both + "colour (one is grey): take both alike, or give --laser=any and both as grey images");
+        if (without.depth() != image.depth())
+            throw Failure(both + format("bits of a value (%d, %d): take both alike", 8*(int)without.elemSize1(), 8*(int)image.elemSize1()));
         return laserSignal(image, colour_, without);
     }
 
@@ -276,6 +281,21 @@ std::string profileOf(const std::vector<Scan>& scans, const std::string& unit)
     return plot.svg();
 }
 
+//! Looks for the line at all depths. @return why there is none at those asked for
+std::string whyNoLine(const Options& o, const Calibration& calibration, const Sheet& sheet, const cv::Mat& signal,
+                      const std::string& path, ElsewhereLine& all)
+{
+    ElsewhereLine elsewhere;
+    if (!o.depth.empty())
+    {
+        const ScanLine line = findScanLine(signal, calibration, sheet, cv::Vec2d(0., std::numeric_limits<double>::infinity()));
+        const Measurement measured = measureOnSheet(calibration, sheet, line.points);
+        elsewhere.add(measured);
+        all.add(measured);
+    }
+    return elsewhere.points ? "'" + path + "': " + elsewhere.text(o.depth) : "no line was found in '" + path + "'";
+}
+
 int measureWithSheet(const Options& o, const Calibration& calibration, const Command& command)
 {
     const Sheet sheet = readSheet(o.sheet, calibration);
@@ -286,6 +306,7 @@ int measureWithSheet(const Options& o, const Calibration& calibration, const Com
     Cloud cloud;
     int points = 0, ambiguous = 0, mixed = 0;
     double sigma = 0.;
+    ElsewhereLine elsewhere;
     Progress progress("measuring", (int)paths.size(), command.quiet());
     for (const std::string& path : paths)
     {
@@ -293,10 +314,11 @@ int measureWithSheet(const Options& o, const Calibration& calibration, const Com
         requireSize(image, path, calibration.cameras[0].camera->imageSize());
         Scan scan;
         scan.name = stemOf(path);
-        scan.line = findScanLine(laser.signal(image, path), calibration, sheet, depth);
+        const cv::Mat signal = laser.signal(image, path);
+        scan.line = findScanLine(signal, calibration, sheet, depth);
         scan.measured = measureOnSheet(calibration, sheet, scan.line.points);
         if (scan.line.points.empty())
-            command.warn(!scan.line.mixed ? "no line was found in '" + path + "'"
+            command.warn(!scan.line.mixed ? whyNoLine(o, calibration, sheet, signal, path, elsewhere)
                          : "of the line in '" + path + "' all points are near its ends or steps, where two surfaces are seen");
         for (size_t i = 0; i < scan.line.points.size(); i++)
             if (scan.measured.status[i] == REFRACT_OK)
@@ -313,6 +335,8 @@ int measureWithSheet(const Options& o, const Calibration& calibration, const Com
         scans.push_back(scan);
         progress.step();
     }
+    if (!points && elsewhere.points)
+        throw Failure(elsewhere.text(o.depth) + ": give the depths of the scene, in the unit of calib.yml");
     if (!points)
         throw Failure("no point of a line could be measured: is the line in the images, and of the colour of the sheet's calibration?");
     if (!o.out.empty())

@@ -4,7 +4,10 @@
 // refract_laser as a user runs it: real images in water, and what it refuses.
 #include "run_tool.hpp"
 #include <catch2/catch.hpp>
+#include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <cmath>
 #include <filesystem>
 #include <iostream>
 
@@ -80,7 +83,40 @@ void writeSmallCamera(const TemporaryFolder& folder)
     cv::imwrite(folder / "colour.png", cv::Mat(48, 64, CV_8UC3, cv::Scalar(20, 20, 20)));
 }
 
+//! A sheet that crosses the small camera's view, from y = -300 at z = 0 to 300 at z = 2000.
+void writeSheetOfSmallCamera(const TemporaryFolder& folder)
+{
+    const double length = std::hypot(1., 0.3);
+    cv::FileStorage fs(folder / "good.yml", cv::FileStorage::WRITE);
+    fs << "sheet_plane" << std::vector<double>{0., 1/length, -0.3/length, -300/length}
+       << "covariance" << cv::Mat(cv::Mat::eye(4, 4, CV_64F)*1e-6)
+       << "by_parameters" << cv::Mat(cv::Mat::zeros(4, 16, CV_64F)) << "line_scale_px" << 1.5
+       << "line_noise_px" << 0.05 << "laser" << "green"
+       << "depth" << std::vector<double>{400, 1600} << "unit" << ""
+       << "camera_parameters" << std::vector<double>{80, 80, 32, 24, 0, 0, 0, 0, 0, 0, 1, 10, 1, 1.333, 5, 1.5};
+}
+
 } // namespace
+
+TEST_CASE("refract_laser says that the line is at other depths than --depth", "[laser_tool]")
+{
+    const TemporaryFolder folder;
+    writeSmallCamera(folder);
+    writeSheetOfSmallCamera(folder);
+    cv::Mat image(48, 64, CV_8UC3, cv::Scalar(20, 20, 20));
+    cv::line(image, cv::Point(0, 20), cv::Point(63, 20), cv::Scalar(20, 220, 20), 2);
+    cv::GaussianBlur(image, image, cv::Size(), 1.2);
+    cv::imwrite(folder / "line.png", image);
+    const std::string call = "refract_laser " + (folder / "calib.yml") + " '" + (folder / "line.png") + "' --sheet="
+        + (folder / "good.yml") + " --out=" + (folder / "points.csv");
+    const ToolResult all = runTool(call), none = runTool(call + " --depth=1,2");
+    CAPTURE(all.err, none.err);
+    CHECK(all.code == 0);
+    CHECK(none.code == 1);
+    CHECK(mentions(none.err, "points of a line are at z "));
+    CHECK(mentions(none.err, "outside --depth=1,2"));
+    CHECK_FALSE(mentions(none.err, "colour"));
+}
 
 TEST_CASE("refract_laser says what is wrong with an emitter", "[laser_tool]")
 {
@@ -118,7 +154,20 @@ TEST_CASE("refract_laser says what is wrong", "[laser_tool]")
     writeSmallCamera(folder);
     writeFile(folder / "sheet.yml", "%YAML:1.0\n---\nplane: 1\n");
     const std::string calib = "refract_laser " + (folder / "calib.yml") + " ", colour = "'" + (folder / "colour.png") + "' ";
+    // What --laser-off differs in, of images of one camera.
+    std::filesystem::create_directories(folder / "off");
+    std::filesystem::create_directories(folder / "on");
+    const auto pairOf = [&](const std::string& name, const cv::Mat& on, const cv::Mat& off) {
+        cv::imwrite(folder / "on/" + name, on);
+        cv::imwrite(folder / "off/" + name, off);
+        return "'" + (folder / "on/" + name) + "' --laser-off='" + (folder / "off/" + name) + "' --sheet=" + (folder / "good.yml");
+    };
+    writeSheetOfSmallCamera(folder);
+    const cv::Mat lit(48, 64, CV_8UC3, cv::Scalar(20, 20, 20));
     const struct { std::string arguments, sentence; } cases[] = {
+        {pairOf("grey.png", lit, cv::Mat(48, 64, CV_8U, cv::Scalar(20))), "differ in colour"},
+        {pairOf("size.png", lit, cv::Mat(40, 64, CV_8UC3, cv::Scalar(20, 20, 20))), "differ in size (64x40, 64x48)"},
+        {pairOf("deep.png", lit, cv::Mat(48, 64, CV_16UC3, cv::Scalar(20, 20, 20))), "differ in bits of a value (16, 8)"},
         {colour, "--sheet-out"},
         {colour + "--sheet-out=" + (folder / "s.yml"), "--size and --square"},
         {colour + "--size=4x3 --square=5 --sheet-out=" + (folder / "s.txt"), ".yml"},

@@ -3,7 +3,9 @@
 
 #include "laser/laser_output.hpp"
 #include "console/csv.hpp"
+#include "console/numbers.hpp"
 #include <opencv2/core.hpp>
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 #include <sstream>
@@ -26,6 +28,22 @@ std::string csvOf(const std::vector<Scan>& scans)
 }
 
 std::string unitAfter(const std::string& unit) { return unit.empty() ? "" : " " + unit; }
+
+void ElsewhereLine::add(const Measurement& measured)
+{
+    for (size_t i = 0; i < measured.points.size(); i++)
+        if (measured.status[i] == REFRACT_OK)
+        {
+            points++;
+            near = std::min(near, measured.points[i].z);
+            far = std::max(far, measured.points[i].z);
+        }
+}
+
+std::string ElsewhereLine::text(const std::string& depth) const
+{
+    return format("%d points of a line are at z %.4g to %.4g, outside --depth=%s", points, near, far, depth.c_str());
+}
 
 std::string bendNotice(const SheetFit& fit, const std::string& unit)
 {
@@ -55,8 +73,8 @@ void printSheet(const SheetFit& fit, const std::vector<BoardImage>& boards, cons
     double rms = 0.;
     for (const LineOnBoard& line : fit.lines)
         rms += line.rmsPx*line.rmsPx/fit.lines.size();
-    std::cout << format("Sheet of light: %.6f x %+.6f y %+.6f z = %.4f%s (camera 1)\n", sheet.plane[0], sheet.plane[1], sheet.plane[2],
-                        sheet.plane[3], unit.c_str());
+    std::cout << format("Sheet of light: %.6f x %+.6f y %+.6f z = %s%s (camera 1)\n", sheet.plane[0], sheet.plane[1], sheet.plane[2],
+                        rounded(sheet.plane[3], decimalsOf(fit.sheetStd)).c_str(), unit.c_str());
     if (isPlane(sheet))
         std::cout << format("  +- %.3f deg, ", tilt);
     else
@@ -67,8 +85,8 @@ void printSheet(const SheetFit& fit, const std::vector<BoardImage>& boards, cons
                         boards.size())
               << format("  lines: %.3f px off straight (RMS), profile %.1f px wide (standard deviation)\n", std::sqrt(rms), sheet.scale)
               << format("  boards' poses: errors %.1f times those of the corners' noise\n", fit.poseNoise)
-              << format("Each board held out: %.3f%s from the sheet of the others (RMS),\n  %.2f times what the +- says\n",
-                        fit.heldOutRms(), unit.c_str(), fit.heldOutRatio());
+              << format("Each board held out: %s%s from the sheet of the others (RMS),\n  %.2f times what the +- says\n",
+                        rounded(fit.heldOutRms(), decimalsOf(fit.heldOutRms())).c_str(), unit.c_str(), fit.heldOutRatio());
 }
 
 } // namespace tools

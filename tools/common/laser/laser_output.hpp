@@ -7,6 +7,8 @@
 #include "laser/scan_line.hpp"
 #include "laser/sheet_fit.hpp"
 #include "measure/measurement.hpp"
+#include <limits>
+#include <string>
 
 /* What refract_laser says of a sheet of light, and of points on it. */
 namespace tools {
@@ -30,6 +32,17 @@ std::string bendNotice(const SheetFit& fit, const std::string& unit);
 
 //! On the terminal.
 void printSheet(const SheetFit& fit, const std::vector<BoardImage>& boards, const Sheet& sheet);
+
+//! What images have of a line at other depths than those asked for.
+struct ElsewhereLine
+{
+    int points = 0;
+    double near = std::numeric_limits<double>::infinity(), far = 0.;
+
+    void add(const Measurement& measured);
+    //! @param depth as it was asked for
+    std::string text(const std::string& depth) const;
+};
 
 } // namespace tools
 

@@ -168,6 +168,8 @@ struct Estimate
 
 Estimate estimatePlane(const Boards& boards)
 {
+    if (boards.images.size() == 1)
+        throw Failure("one image of a board does not make a sheet of light: take ten or more, at several distances and tilts");
     const Vec4d start = planeOfMostLines(boards.images);
     if (start == Vec4d())
         throw Failure("no two images agree on a sheet of light: is the line on the boards, and of the colour that --laser says?");
