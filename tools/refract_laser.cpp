@@ -222,6 +222,11 @@ int calibrateSheet(const Options& o, const Calibration& calibration, const Comma
     sheet.time = timeOfFiles(inputs);
     for (int m : fit.without)
         command.warn("'" + boards[m].name + "' is left out: no line of its board lies on the sheet of the others");
+    for (int m : fit.disagreeing)
+        command.warn("'" + boards[m].name + "' is left out: its line contradicts those of the other boards; is it an edge of the board?");
+    if (fit.poseNoise > SheetFit::LARGE_POSE_NOISE)
+        command.warn(format("the boards disagree by %.1f times what their corners' noise explains: look at the lines (--picture-dir), and "
+                            "leave out images in which it is an edge of the board", fit.poseNoise));
     if (emitter)
         warnOfEmitter(o, fit, command);
     const std::string bend = bendNotice(fit, sheet.unit);

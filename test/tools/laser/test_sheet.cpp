@@ -107,6 +107,21 @@ TEST_CASE("A sheet's derivative by the calibration is that of a fit with another
     }
 }
 
+TEST_CASE("A board whose line contradicts the others' is named and left out", "[laser][sheet]")
+{
+    const Calibration calibration = laser::camera();
+    std::vector<BoardImage> images = boards(calibration, 8, laser::sheet(), laser::Light(), 2913);
+    // Next to the sheet, within the pixels in which it is looked for.
+    const Vec4d beside = laser::sheet() + Vec4d(0, 0, 0, 0.8);
+    images.push_back(boards(calibration, 1, beside, laser::Light(), 2914)[0]);
+    const SheetFit fit = fitSheet(images, calibration, CORNER, 1.7);
+    CAPTURE(fit.poseNoise, fit.lines.size(), fit.without.size());
+    CHECK(fit.disagreeing == std::vector<int>{8});
+    CHECK(fit.lines.size() == 8);
+    CHECK(fit.poseNoise < 2.);
+    CHECK(chiSquare(fit.sheet, laser::sheet()) < 16.3);         // 0.1 % of 3 degrees of freedom
+}
+
 TEST_CASE("Lines that do not determine a sheet are refused", "[laser][sheet]")
 {
     const Calibration calibration = laser::camera();

@@ -127,7 +127,7 @@ struct Estimate
 {
     SheetPtr sheet;
     std::vector<LineOnBoard> lines;
-    std::vector<int> without;
+    std::vector<int> without, disagreeing;
     std::vector<LineRows> rows;
     std::vector<ReducedLine> reduced;
     double poseNoise = 1.;
@@ -143,6 +143,8 @@ struct Estimate
         {
             LineOnBoard line;
             line.image = (int)m;
+            if (std::find(disagreeing.begin(), disagreeing.end(), (int)m) != disagreeing.end())
+                continue;
             line.points = pointsOnSheet(boards.images[m], *sheet, boards.scale, NEAR_PX);
             if (line.points.empty())
                 without.push_back((int)m);
@@ -164,7 +166,57 @@ struct Estimate
             reduced.emplace_back(rows.back(), sheet->coefficients());
         }
     }
+    void fitPlane(const Boards& boards)
+    {
+        for (int round = 0; round < ROUNDS; round++)
+        {
+            findLines(boards);
+            linearize(boards);
+            poseNoise = poseNoiseOf(reduced, VectorXd());
+            const SheetStep next = step();
+            requireDetermined(next);
+            if (round + 1 < ROUNDS)
+                sheet = sheet->moved(next.step);
+        }
+    }
 };
+
+/** Boards whose line is another one, such as an edge: without them the errors of the others' poses are several times smaller. Each is
+the one without which they are smallest.
+@return images */
+std::vector<int> disagreeingBoards(const Estimate& estimate)
+{
+    const double LARGE = SheetFit::LARGE_POSE_NOISE, SMALLER = 1.5;
+    std::vector<ReducedLine> lines = estimate.reduced;
+    std::vector<int> images, disagreeing;
+    for (const LineOnBoard& line : estimate.lines)
+        images.push_back(line.image);
+    const size_t enough = std::max<size_t>(4, images.size() - images.size()/4);
+    double noise = estimate.poseNoise;
+    while (noise > LARGE && lines.size() > enough)
+    {
+        size_t best = 0;
+        double least = INFINITY;
+        for (size_t m = 0; m < lines.size(); m++)
+        {
+            std::vector<ReducedLine> others = lines;
+            others.erase(others.begin() + (std::ptrdiff_t)m);
+            const double without = poseNoiseOf(others, VectorXd());
+            if (without < least)
+            {
+                least = without;
+                best = m;
+            }
+        }
+        if (least*SMALLER > noise)
+            break;
+        noise = least;
+        disagreeing.push_back(images[best]);
+        images.erase(images.begin() + (std::ptrdiff_t)best);
+        lines.erase(lines.begin() + (std::ptrdiff_t)best);
+    }
+    return disagreeing;
+}
 
 Estimate estimatePlane(const Boards& boards)
 {
@@ -175,16 +227,10 @@ Estimate estimatePlane(const Boards& boards)
         throw Failure("no two images agree on a sheet of light: is the line on the boards, and of the colour that --laser says?");
     Estimate estimate;
     estimate.sheet = std::make_shared<PlaneSurface>(start);
-    for (int round = 0; round < ROUNDS; round++)
-    {
-        estimate.findLines(boards);
-        estimate.linearize(boards);
-        estimate.poseNoise = poseNoiseOf(estimate.reduced, VectorXd());
-        const SheetStep step = estimate.step();
-        requireDetermined(step);
-        if (round + 1 < ROUNDS)
-            estimate.sheet = estimate.sheet->moved(step.step);
-    }
+    estimate.fitPlane(boards);
+    estimate.disagreeing = disagreeingBoards(estimate);
+    if (!estimate.disagreeing.empty())
+        estimate.fitPlane(boards);
     return estimate;
 }
 
@@ -319,6 +365,7 @@ SheetFit fitSheet(const std::vector<BoardImage>& images, const Calibration& cali
     judgeLines(boards, estimate, fit);
     fit.lines = estimate.lines;
     fit.without = estimate.without;
+    fit.disagreeing = estimate.disagreeing;
     return fit;
 }
 

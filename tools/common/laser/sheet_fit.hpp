@@ -74,7 +74,9 @@ struct SheetFit
 {
     Sheet sheet;
     std::vector<LineOnBoard> lines;
+    static constexpr double LARGE_POSE_NOISE = 10.;
     std::vector<int> without;           //!< images in which no line is on the sheet
+    std::vector<int> disagreeing;       //!< images left out, as their lines contradict those of the others
     double sheetStd = 0.;               //!< of the sheet's distance where the lines are, RMS; camera and noise
     double poseNoise = 1.;              //!< errors of the boards' poses over those of the pixels' noise
     double planeExcess = 0.;            //!< chi-square of the nearest plane minus that of the emitter's sheet
