@@ -147,8 +147,14 @@ TEST_CASE("Errors that share one scale are told, and those that do not are not",
     const std::optional<CommonScale> scale = commonScale(of(1e-3, 0.01));
     REQUIRE(scale);
     CHECK(scale->value == Approx(1e-3).margin(4*scale->std));
-    CHECK_THAT(scale->sentence(), Catch::StartsWith("All errors share one scale, +0."));
-    CHECK_THAT(scale->sentence(), Catch::Contains("(24 of 24 have its sign)"));
+    CHECK_THAT(scale->sentence("mm"), Catch::StartsWith("All errors share one scale, +0."));
+    CHECK_THAT(scale->sentence("mm"), Catch::Contains("(24 of 24 have its sign): look at the square"));
+    const std::optional<CommonScale> inch = commonScale(of(1/25.4 - 1, 0.01)), tenfold = commonScale(of(9., 0.01));
+    REQUIRE(inch);
+    REQUIRE(tenfold);
+    CHECK_THAT(inch->sentence("inch"), Catch::Contains("are the certified lengths in mm?") && Catch::Contains("calibration, inch"));
+    CHECK_THAT(inch->sentence(""), Catch::Contains("are the certified lengths in another unit?"));
+    CHECK_THAT(tenfold->sentence("mm"), Catch::Contains("are the certified lengths in cm?"));
     CHECK_FALSE(commonScale(of(0., 0.01)));
     CHECK_FALSE(commonScale(of(1e-5, 0.01)));
 }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "accept/acceptance.hpp"
+#include "calibrate/units.hpp"
 #include "console/failure.hpp"
 #include "console/table.hpp"
 #include <algorithm>
@@ -175,7 +176,7 @@ std::vector<std::string> Acceptance::remarks() const
 {
     std::vector<std::string> all = notices;
     if (const std::optional<CommonScale> scale = commonScale(lengths))
-        all.insert(all.begin(), scale->sentence());
+        all.insert(all.begin(), scale->sentence(unit));
     if (outside())
         all.push_back(cv::format("Outside of %s (marked *): %d of %zu lengths", volume.name().c_str(), outside(), lengths.size()));
     std::string lacks;
@@ -186,12 +187,15 @@ std::vector<std::string> Acceptance::remarks() const
     return all;
 }
 
-std::string CommonScale::sentence() const
+std::string CommonScale::sentence(const std::string& unit) const
 {
+    const std::string unitOfLengths = unitSeen(1. + value, unit);
     const std::string sign = value > 0 ? "+" : "";
     return "All errors share one scale, " + sign + plusMinus(100.*value, 100.*std)
-        + cv::format(" %% (%d of %d have its sign): look at the square of the board that calibrated, and at the standard", ofOneSign,
-                     count);
+        + cv::format(" %% (%d of %d have its sign): ", ofOneSign, count)
+        + (unitOfLengths.empty() ? "look at the square of the board that calibrated, and at the standard"
+           : "are the certified lengths in " + unitOfLengths + "? They must be in the unit of the calibration"
+               + (unit.empty() ? "" : ", " + unit));
 }
 
 /* Least squares with the test's own errors; those of one certificate may be common, which no scatter shows: a scale is known no better than

@@ -123,7 +123,8 @@ struct CommonScale
     int ofOneSign, count;
 
     //! "All errors share one scale, +0.100 +- 0.003 % (24 of 24 have its sign): ..."
-    std::string sentence() const;
+    //! @param unit of the calibration; empty: unknown
+    std::string sentence(const std::string& unit) const;
 };
 //! None: fewer than three lengths, or the errors do not show it.
 std::optional<CommonScale> commonScale(const std::vector<LengthResult>& lengths);

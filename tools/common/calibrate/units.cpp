@@ -34,13 +34,26 @@ double bowOf(double curvature, const std::string& unit) { return curvature/curva
 
 double curvatureOf(double bow, const std::string& unit) { return 8.*bow/(1000.*1000.)*millimetresIn(unit); }
 
-bool isRatioOfUnits(double ratio)
+static bool isRatioOfUnits(double ratio, double tolerance)
 {
-    for (double unit : {10., 25.4, 1000., 2.54, 100.})
-        for (double r : {ratio, 1./ratio})
-            if (std::abs(r/unit - 1.) < NEARLY)
+    for (const auto& a : MILLIMETRES)
+        for (const auto& b : MILLIMETRES)
+            if (a.second != b.second && std::abs(ratio*b.second/a.second - 1.) < tolerance)
                 return true;
     return false;
+}
+
+bool isRatioOfUnits(double ratio) { return isRatioOfUnits(ratio, NEARLY); }
+
+std::string unitSeen(double ratio, const std::string& unit)
+{
+    const double ROUNDED = 0.01;        // 24 for 24.14
+    if (!isRatioOfUnits(ratio, ROUNDED))
+        return "";
+    for (const auto& other : MILLIMETRES)
+        if (!unit.empty() && std::abs(ratio*millimetresIn(unit)/other.second - 1.) < ROUNDED)
+            return other.first;
+    return "another unit";
 }
 
 void requireSameUnit(const Calibration& calibration, double square, const std::string& unit)

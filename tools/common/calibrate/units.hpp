@@ -20,8 +20,13 @@ double millimetresIn(const std::string& unit);
 double bowOf(double curvature, const std::string& unit);
 double curvatureOf(double bow, const std::string& unit);
 
-//! One length over another is nearly 10, 25.4, 1000, 2.54 or 100, or one over that: as if they were in two units.
+//! One length over another is nearly that of two units: 10, 25.4, 1000, ..., or one over that.
 bool isRatioOfUnits(double ratio);
+
+/** The same of a ratio that was measured, within the rounding of what people type: which unit a length seems to be in that should be
+this many times as long; "mm", or "another unit"; empty: it is no matter of units.
+@param unit that it is taken for; empty: unknown */
+std::string unitSeen(double ratio, const std::string& unit);
 
 /** Refuses a board whose square looks as if it were in another unit than that of the calibration's board, in which all
 lengths come out.

@@ -3,6 +3,7 @@
 
 #include "measure/measured_doubts.hpp"
 #include "calibrate/given_std.hpp"
+#include "calibrate/units.hpp"
 #include "console/table.hpp"
 #include "math/dense.hpp"
 #include "measure/point_error.hpp"
@@ -207,7 +208,13 @@ std::string wrongLengths(double square, const Calibration& calibration, const st
     const bool isFar = std::abs(scale.ratio - 1.) > FAR_OFF, contradicts = !plane && scale.deviations() > CONTRADICTING;
     if (!isFar && !contradicts)
         return "";
-    return format("the distances between neighbouring points are on average %.*g times those of the target", isFar ? 3 : 6, scale.ratio)
+    const std::string unit = unitSeen(scale.ratio, calibration.unit);
+    const std::string times = format("the distances between neighbouring points are on average %.*g times those of the target",
+                                     isFar ? 3 : 6, scale.ratio);
+    if (!unit.empty())
+        return times + format(": is --square=%g in ", square) + unit
+            + "? It must be in the unit of the calibration" + (calibration.unit.empty() ? "" : ", " + calibration.unit);
+    return times
         + (contradicts ? format(", %.3g standard deviations of noise, calibration and a printed board from 1", scale.deviations())
                        : std::string())
         + format(": is --square=%g right, in the unit of the calibration, and are ", square)
