@@ -1,6 +1,7 @@
 // This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
 // SPDX-License-Identifier: Apache-2.0
 
+#include "assess/rig_check.hpp"
 #include "console/cli.hpp"
 #include "console/csv.hpp"
 #include "console/file_output.hpp"
@@ -33,7 +34,9 @@ follows from the residuals of the matches by the size of the features. For refra
 Of two cameras a wrong match along the curve cannot be seen; the count that is expected is said.
 
 --picture draws some of the first moment's matches: points of camera 1, and in camera 2 their curves (dashed: with the windows ignored) and
-partners. The residuals are told beside those of the same matches with the windows ignored.)";
+partners. The residuals are told beside those of the same matches with the windows ignored.
+
+Exit code: 0 done, 1 could not do it, 2 done and written, but the images are not what they are given for: taken without the windows.)";
 
 namespace {
 
@@ -110,6 +113,15 @@ cv::Mat pictureOf(const SceneMatches& result, const Calibration& calibration, st
                            curvesOf(withoutWindows(pair), points, depth));
 }
 
+//! What the images are in place of what they are given for; empty: that. Some of the matches tell.
+std::string mixupOf(const SceneMatches& result, const Calibration& calibration)
+{
+    const int ENOUGH = 1000;
+    const RigModel rig = modelOf(calibration);
+    const ScaledMatches some = result.good.only(spreadChoice(result.good, rig, ENOUGH));
+    return mixupIn(calibration, observationsOf(rig, some.matches), some.matches.usualStd());
+}
+
 void print(const SceneMatches& result, double withoutWindows)
 {
     std::cout << format("%zu matches of %d moment%s, %d of them left out as no point explains them; about %.0f wrong ones are left\n",
@@ -141,6 +153,10 @@ int refract_match_main(int argc, char** argv)
             writeImage(options.picture, pictureOf(result, calibration, frames, options.scene.depth));
         if (!command.quiet())
             print(result, residualWithoutWindows(calibration, result.good));
-        return DONE;
+        const std::string mixup = mixupOf(result, calibration);
+        if (mixup.empty())
+            return DONE;
+        command.warn("the matches contradict the calibration; what explains them: " + mixup);
+        return LIMIT_NOT_MET;
     });
 }

@@ -136,6 +136,19 @@ std::vector<MistakeMade> mistakesMade()
                                last = view.hasGlass(c) ? c : last;
                            forEachImage(view, last, [](Point2d& p) { p.x = 1279 - p.x; });
                        } }});
+    const auto withoutWindows = [](RigModel& rig, int first, int last) {
+        for (int c = first; c <= last; c++)
+            rig.cameras[c] = copyWithWindow(rig.cameras[c], GlassWindow()); };
+    all.push_back({"no window before any camera", {"images taken without the window"}, {}, always,
+                   [=](RigModel& rig, scenes::Random&) { withoutWindows(rig, 0, (int)rig.cameras.size() - 1); }});
+    all.push_back({"no window before camera 2", {"images of camera 2 taken without the window"}, {}, several,
+                   [=](RigModel& rig, scenes::Random&) { withoutWindows(rig, 1, 1); }});
+    for (const double times : {25.4, 10., 3.})
+        all.push_back({cv::format("square given %g times as large", times),
+                       {"square of the board (--square)"}, {}, several, [](RigModel&, scenes::Random&) {}, [=](std::vector<View>& views) {
+                           for (View& view : views)
+                               for (Point3d& X : view.objectPoints)
+                                   X *= times; }});
     return all;
 }
 

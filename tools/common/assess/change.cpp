@@ -301,8 +301,7 @@ private:
 
     void addTarget()
     {
-        add("square of the board (--square) other than given by", -1, {percent(WIDE)},
-            [](RigModel& rig, const VectorXd& d) { rig.targetScale *= 1. + d[0]; });
+        rows.push_back(changeOfSquare());
         chart("square of the board", {""});
         const Vec3d middle = middle_;
         const auto move = [middle](RigModel& rig, const Vec3d& turn, const Vec3d& shift) {
@@ -324,6 +323,12 @@ private:
 };
 
 } // namespace
+
+Change changeOfSquare()
+{
+    return {"square of the board (--square) other than given by", -1, {{"%", 100., 1, WIDE}},
+            [](RigModel& rig, const VectorXd& d) { rig.targetScale *= 1. + d[0]; }};
+}
 
 int Change::size() const
 {

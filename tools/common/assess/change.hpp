@@ -43,6 +43,9 @@ struct Change
     VectorXd ranges() const;
 };
 
+//! Of all targets alike.
+Change changeOfSquare();
+
 /** The table. Each row frees one thing alone.
 @param unit of lengths, for the sentences; may be empty
 @param middle of the boards, in camera 1: about which they turn */

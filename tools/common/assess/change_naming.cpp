@@ -32,14 +32,49 @@ void ChangeNaming::add(const TestedChange& tested)
     candidates_.push_back({named, tested.fit.chiSquare, tested.at.count(), &tested});
 }
 
+/* Wrong matches of a scene that are left are those that fit what their rig was bent to. A mistake undone has it straight: few that are far
+off then are wrong, and count as just not. */
+static CheckFit fitOfScene(const CheckInput& input, std::vector<ViewObservations> views, double sigma)
+{
+    const double MOST = 0.02, FAR = 5.;         // share of the matches; standard deviations
+    double ofWrong = 0.;
+    for (int round = 0;; round++)
+    {
+        CheckFit fit = CheckProblem(input, views, sigma).fitUnchanged();
+        std::vector<ViewObservations> kept = views;
+        size_t wrong = 0, all = 0;
+        for (size_t v = 0; v < views.size() && std::isfinite(fit.chiSquare); v++)
+        {
+            wrong += giveUpFarOff(fit.rig, fit.views[v], FAR*sigma, kept[v]);
+            all += views[v].objectPoints.size();
+        }
+        if (round > 0 || wrong == 0 || wrong > MOST*all)
+        {
+            fit.chiSquare += ofWrong;
+            return fit;
+        }
+        ofWrong = FAR*FAR*wrong;
+        views = kept;
+    }
+}
+
+static CheckFit fitOf(const Undone& undone, const CheckInput& input, double sigma)
+{
+    if (!undone.observed.empty() && undone.observed[0].isScene)
+        return fitOfScene(input, undone.observed, sigma);
+    const CheckProblem problem = undone.observed.empty() ? CheckProblem(input, undone.views, sigma)
+                                                         : CheckProblem(input, undone.observed, sigma);
+    const CheckFit fit = problem.fitUnchanged();
+    return undone.freed && std::isfinite(fit.chiSquare) ? problem.fit(*undone.freed, undone.freed->ranges().asDiagonal(), fit) : fit;
+}
+
 void ChangeNaming::addUndone(const CheckInput& input, const std::vector<Undone>& all)
 {
     for (const Undone& undone : all)
     {
         try
         {
-            const CheckProblem problem(input, undone.views, result_.sigma);
-            const CheckFit fit = problem.fitUnchanged();
+            const CheckFit fit = fitOf(undone, input, result_.sigma);
             if (!std::isfinite(fit.chiSquare))
                 continue;
             const int parameters = std::max(1, 6*undone.poses);
@@ -113,9 +148,9 @@ void ChangeNaming::tellWhatCanHappenFirst(std::vector<Candidate>& named) const
         return;
     const double AS_LIKELY = 10., best = named[0].chiSquare;       // difference of two chi^2
     const auto less = std::stable_partition(named.begin(), end, [=](const Candidate& c) { return c.chiSquare < best + AS_LIKELY; });
-    std::stable_sort(named.begin(), less, [](const Candidate& a, const Candidate& b) {
-        return a.tested->change->ease < b.tested->change->ease; });
-    for (auto c = named.begin(); c != less && c->tested->change->isTurn(); ++c)
+    const auto easeOf = [](const Candidate& c) { return c.tested ? c.tested->change->ease : Change::CAMERA_TURNS; };
+    std::stable_sort(named.begin(), less, [=](const Candidate& a, const Candidate& b) { return easeOf(a) < easeOf(b); });
+    for (auto c = named.begin(); c != less && c->tested && c->tested->change->isTurn(); ++c)
         result_.mayHaveTurned.push_back(c->tested->change->turnedCamera());
 }
 

@@ -233,7 +233,9 @@ private:
         ChangeNaming naming(*problem_, unchanged_, isScene_, result_);
         for (const TestedChange& tested : tested_)
             naming.add(tested);
+        naming.addUndone(input_, imagesWithoutWindows(input_.rig, unchanged_.views));
         naming.addUndone(input_, isScene_ ? std::vector<Undone>() : unrelatedImages(input_.rig, views_));
+        naming.addUndone(input_, isScene_ ? std::vector<Undone>() : boardOfOtherSize(input_.rig, views_, unit_));
         // Also where a change explains all: of a camera in the middle of its images, mirrored ones look like a window mirrored.
         if (!isScene_ && !(unchanged_.chiSquare < GROSS*GROSS*problem_->observations()))
             naming.addUndone(input_, swappedImages(input_.rig, views_));
@@ -355,6 +357,20 @@ std::string causesOf(const Calibration& calibration, const std::vector<View>& vi
         return causesIn(checkRig(checkInputOf(calibration, "", pixelSigma), some, FALSE_ALARM, calibration.unit));
     }
     catch (const Failure&)          // no pose, no noise
+    {
+        return "";
+    }
+}
+
+std::string mixupIn(const Calibration& calibration, const ViewObservations& scene, double sigma)
+{
+    const double FALSE_ALARM = 1e-4;
+    try
+    {
+        const CheckResult result = checkScene(checkInputOf(calibration, "", sigma), scene, FALSE_ALARM, calibration.unit);
+        return result.isMixup && result.explained ? causesIn(result) : "";
+    }
+    catch (const Failure&)          // too few points
     {
         return "";
     }

@@ -2,9 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "assess/change_naming.hpp"
+#include "calibrate/units.hpp"
+#include "console/numbers.hpp"
 #include "console/table.hpp"
 #include "diagnose/calibration_input.hpp"
 #include <algorithm>
+#include <cmath>
 #include <functional>
 
 using namespace cv;
@@ -142,7 +145,61 @@ Undone split(const std::vector<View>& views, const std::string& name, const std:
     return result;
 }
 
+std::vector<ViewObservations> withoutWindows(std::vector<ViewObservations> views, const std::vector<int>& cameras)
+{
+    for (ViewObservations& view : views)
+        for (ImageOfView& image : view.images)
+            image.glass = image.glass && std::count(cameras.begin(), cameras.end(), image.camera) == 0;
+    return views;
+}
+
+//! Points as all cameras that look through windows see them over how they are given, the middling distance of two; NaN: no two do.
+double measuredSize(const RigModel& rig, const std::vector<View>& views)
+{
+    std::vector<double> ratios;
+    for (const View& view : views)
+    {
+        std::vector<Pixels> pixels(view.glass.begin(), view.glass.begin() + (int)rig.cameras.size());
+        for (Pixels& ofCamera : pixels)
+            ofCamera.resize(view.objectPoints.size(), Point2d(NAN, NAN));
+        const std::vector<Point3d> points = view.countGlass() > 1 ? triangulate(rig, pixels) : std::vector<Point3d>();
+        for (size_t i = 1; i < points.size(); i++)
+        {
+            const double ratio = norm(points[i] - points[i - 1])/norm(view.objectPoints[i] - view.objectPoints[i - 1]);
+            if (std::isfinite(ratio))
+                ratios.push_back(ratio);
+        }
+    }
+    return ratios.empty() ? NAN : median(ratios);
+}
+
 } // namespace
+
+std::vector<Undone> imagesWithoutWindows(const RigModel& rig, const std::vector<ViewObservations>& views)
+{
+    std::vector<Undone> all;
+    for (const std::vector<int>& cameras : camerasWithoutWindows(rig))
+        all.push_back({takenWithoutWindow(cameras, (int)rig.cameras.size()), cameras.size() > 1 ? -1 : cameras[0], {}, 0,
+                       withoutWindows(views, cameras)});
+    return all;
+}
+
+std::vector<Undone> boardOfOtherSize(const RigModel& rig, const std::vector<View>& views, const std::string& unit)
+{
+    const double FAR = 1.2;             // times: what is nearer a fit finds
+    const double size = measuredSize(rig, views);
+    if (!(std::max(size, 1./size) > FAR))
+        return {};
+    const std::string unitOfBoard = unitSeen(size, unit);
+    const std::string times = format("%.4g times that given", size);
+    Undone undone{"square of the board (--square) " + (unitOfBoard.empty() ? times : "given in " + unitOfBoard + ": it is " + times), -1,
+                  views};
+    undone.freed = changeOfSquare();    // several cameras hardly tell it as well as the fit
+    for (View& view : undone.views)
+        for (Point3d& X : view.objectPoints)
+            X *= size;
+    return {undone};
+}
 
 std::vector<Undone> swappedImages(const RigModel& rig, const std::vector<View>& views)
 {

@@ -71,6 +71,40 @@ Ptr<RefractiveCamera> copyWithWindow(const Ptr<RefractiveCamera>& camera, const 
     return copy;
 }
 
+std::vector<std::vector<int>> camerasWithoutWindows(const RigModel& rig)
+{
+    std::vector<std::vector<int>> sets(1);
+    for (int c = 0; c < (int)rig.cameras.size(); c++)
+    {
+        if (!refracts(rig.cameras[c]->window()))
+            continue;
+        std::vector<int> ofPane;
+        for (int k = 0; k < (int)rig.cameras.size(); k++)
+            if (rig.sharesWindow(c, k))
+                ofPane.push_back(k);
+        sets[0].push_back(c);
+        sets.push_back({c});
+        sets.push_back(ofPane);
+    }
+    std::stable_sort(sets.begin(), sets.end(), [](const auto& a, const auto& b) {
+        return a.size() != b.size() ? a.size() > b.size() : a < b; });
+    sets.erase(std::unique(sets.begin(), sets.end()), sets.end());
+    if (sets.back().empty())            // no camera has any
+        sets.pop_back();
+    return sets;
+}
+
+std::string takenWithoutWindow(const std::vector<int>& cameras, int count)
+{
+    std::string names;
+    for (int c : cameras)
+        names += (names.empty() ? "" : ", ") + std::to_string(c + 1);
+    const bool all = (int)cameras.size() == count, one = cameras.size() == 1;
+    return "images" + (all ? std::string() : (one ? " of camera " : " of cameras ") + names)
+        + (one ? " taken without the window: they fit with no glass before the camera"
+               : " taken without the windows: they fit with no glass before the cameras");
+}
+
 void poseInCamera(const RigModel& rig, int camera, Vec3d& rvec, Vec3d& tvec)
 {
     if (camera == 0)

@@ -49,6 +49,13 @@ void shareWindow(RigModel& rig, int owner);
 cv::Ptr<cv::refract::RefractiveCamera> copyWithWindow(const cv::Ptr<cv::refract::RefractiveCamera>& camera,
                                                       const cv::refract::GlassWindow& window);
 
+/* Images that are given as through a window, though it was out. */
+
+//! All cameras with a window, each, and those of each pane.
+std::vector<std::vector<int>> camerasWithoutWindows(const RigModel& rig);
+//! What is said of it: "images of camera 2 taken without ...". @param count of the rig's cameras
+std::string takenWithoutWindow(const std::vector<int>& cameras, int count);
+
 const int TARGET_ERRORS = 7;                    //!< rows of targetCovariance
 
 //! A target's points as they are, from what is given.

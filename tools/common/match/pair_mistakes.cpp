@@ -88,7 +88,7 @@ std::vector<Mistake> mistakesOfMirrored(cv::Size size)
             {"RIGHT is mirrored, top and bottom", turned(true, false, false, true)}};
 }
 
-std::vector<Mistake> mistakesOf(cv::Size size)
+std::vector<Mistake> mistakesOf(const RigModel& rig, cv::Size size)
 {
     const auto both = [size](bool x, bool y) {
         return [=](Undone& p) { turn(p.partners.pixels1, size, x, y); turn(p.partners.pixels2, size, x, y); }; };
@@ -105,6 +105,10 @@ std::vector<Mistake> mistakesOf(cv::Size size)
         {"cameras 1 and 2 are exchanged in the calibration", exchangeCameras},
         {"R and T in the calibration lead from camera 2 to camera 1", reverseTransform},
     };
+    for (const std::vector<int>& cameras : camerasWithoutWindows(rig))
+        mistakes.push_back({takenWithoutWindow(cameras, 2), [=](Undone& p) {
+            for (int c : cameras)
+                setWindow(p.calibration, c, cv::refract::GlassWindow()); }});
     for (int axis = 0; axis < 2; axis++)
     {
         const char name = axis ? 'y' : 'x';
@@ -205,8 +209,8 @@ PairDiagnosis diagnosePair(const Calibration& calibration, const Mat& image1, co
     const std::vector<double> misses = missesOf(asGiven);
     if (!isMirrored)
         result.rows = misses[misses.size()/2];
-    result.mistake = nameMistakes(isMirrored ? mistakesOfMirrored(grey1.size()) : mistakesOf(grey1.size()), asGiven,
-                                  isMirrored ? 0 : fitting(misses));
+    result.mistake = nameMistakes(isMirrored ? mistakesOfMirrored(grey1.size()) : mistakesOf(modelOf(calibration), grey1.size()),
+                                  asGiven, isMirrored ? 0 : fitting(misses));
     return result;
 }
 

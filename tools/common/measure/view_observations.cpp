@@ -75,6 +75,25 @@ ViewDerivatives refinePose(const RigModel& rig, ViewObservations& observed)
     return derivatives;
 }
 
+size_t giveUpFarOff(const RigModel& rig, const ViewObservations& at, double far, ViewObservations& observed)
+{
+    const double NOTHING = 1e6;         // times the noise: next to no weight
+    const VectorXd misses = at.weighed(at.pixels - differentiateView(rig, at.objectPoints, at.rvec, at.tvec, at.images).predicted);
+    std::vector<double> squares(at.objectPoints.size(), 0.);
+    std::vector<int> pointOf;           // of each row
+    for (const ImageOfView& image : at.images)
+        for (int point : image.points)
+            pointOf.insert(pointOf.end(), {point, point});
+    for (size_t row = 0; row < pointOf.size(); row++)
+        squares[pointOf[row]] += misses[row]*misses[row];
+    if (observed.noise.size() == 0)
+        observed.noise = VectorXd::Ones((Eigen::Index)pointOf.size());
+    for (size_t row = 0; row < pointOf.size(); row++)
+        if (squares[pointOf[row]] > far*far)
+            observed.noise[row] *= NOTHING;
+    return std::count_if(squares.begin(), squares.end(), [=](double s) { return s > far*far; });
+}
+
 MatrixXd ViewObservations::weighed(const MatrixXd& rows) const
 {
     if (noise.size() == 0)

@@ -62,6 +62,10 @@ private:
 //! The seen points of one image, after those that are there; an image without any is none.
 void addImage(const View& view, int camera, bool glass, ViewObservations& observed);
 
+/** Points of a scene that miss their pixels by more than that count no more in `observed`. @param at the same view where it was fitted
+@param far px of a usual coordinate @return how many */
+size_t giveUpFarOff(const RigModel& rig, const ViewObservations& at, double far, ViewObservations& observed);
+
 //! The pose is that of one of the images. Throws Failure if none has one.
 ViewObservations observationsOf(const RigModel& rig, const View& view);
 
