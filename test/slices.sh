@@ -161,9 +161,8 @@ slice_fuzz_4() { long_fuzzing 4; }
 
 # ---- Monte Carlo, crude starts, honesty, scaling: what the suites do not run
 monte_carlo() {         # monte_carlo FIRST: of the hidden tests every sixth, without those that make the samples' data
-  targets="refract_tests refract_program_tests refract_tools_tests"
-  build build/release
-  for program in $targets; do
+  build build/release       # all of it: tests run the tools
+  for program in refract_tests refract_program_tests refract_tools_tests; do
     build/release/bin/"$program" "[.]~[wand-data]~[flows]" --list-test-names-only | sed "s/^/$program /"
   done | sed -n "$1~6p" >build/hidden.txt
   run "there are hidden tests" test -s build/hidden.txt
