@@ -112,7 +112,7 @@ std::vector<Mistake> mistakes()
         {"thickness 2 28 for 25", "another thickness of the window of camera 2", [](Pair& p) { thicken(p, 1, 3); }},
         {"no windows", "images taken without the windows", [](Pair& p) { p.left = p.withoutWindow[0]; p.right = p.withoutWindow[1]; }},
         {"no window 1", "images of camera 1 taken without the window", [](Pair& p) { p.left = p.withoutWindow[0]; }},
-        {"no window 2", "images of camera 2 taken without the window", [](Pair& p) { p.right = p.withoutWindow[1]; }},
+        {"no window 2", "calibration and images do not fit", [](Pair& p) { p.right = p.withoutWindow[1]; }},
         {"images exchanged", "LEFT and RIGHT are swapped", [](Pair& p) { std::swap(p.left, p.right); }},
         {"both images mirrored", "both images are mirrored, left and right", flipped(true, true, 1)},
         {"both images upside down", "both images are mirrored, top and bottom", flipped(true, true, 0)},
