@@ -63,6 +63,35 @@ TEST_CASE("A target that nearly touches a steep wall has its pose", "[pnp]")
     CHECK(count >= 20);
 }
 
+TEST_CASE("A board exactly across the view has its pose", "[pnp]")
+{
+    for (int trial = 0; trial < trials(200); trial++)
+    {
+        Random random(270 + trial);
+        GlassWindow window(Vec3d(0, 0, 1) + (trial % 2)*Vec3d(random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1), 0), 12, 1.5, 30, 1.333);
+        const Ptr<RefractiveCamera> camera = RefractiveCamera::create(Matx33d(1100, 0, 640, 0, 1100, 480, 0, 0, 1), noArray(), window);
+        const Vec3d n = normalize(window.normal), across = Vec3d(0, 0, 1).cross(n);
+        const double sine = norm(across), turn = random.uniform(-3, 3);
+        Matx33d parallel, spin;
+        Rodrigues(sine > 0 ? across*(std::asin(sine)/sine) : Vec3d(), parallel);
+        Rodrigues(Vec3d(0, 0, turn), spin);
+        const Vec3d tvec = n*random.uniform(50, 800);
+        const std::vector<Point3d> object = board(6, 5, random.uniform(1, 6));
+        Vec3d rvec, r, t;
+        Rodrigues(parallel*spin, rvec);
+        std::vector<Point2d> pixels;
+        Mat status;
+        refractiveProjectPoints(object, rvec, tvec, camera, pixels, status);
+        CAPTURE(trial, turn, tvec, object[1].x, seed());
+        REQUIRE(countNonZero(status) == 0);
+        REQUIRE(refractiveSolvePnP(object, pixels, camera, r, t));
+        CHECK(norm(t - tvec) < 1e-6*norm(tvec));
+        std::vector<Point2d> again;
+        refractiveProjectPoints(object, r, t, camera, again, status);
+        CHECK(norm(again, pixels, NORM_INF) < 1e-7);
+    }
+}
+
 TEST_CASE("Targets of any unit have their pose", "[pnp]")
 {
     Random random(215);
@@ -429,7 +458,9 @@ TEST_CASE("No pose is false, bad arguments are named", "[pnp]")
     CHECK(nothing({ object.begin(), object.begin() + 6 }, { pixels.begin(), pixels.begin() + 6 }));     // one row
     CHECK(nothing(std::vector<Point3d>(6, object[0]), std::vector<Point2d>(6, pixels[0])));
     CHECK(nothing(object, std::vector<Point2d>(object.size(), Point2d(NaN, NaN))));
-    CHECK(nothing(object, std::vector<Point2d>(object.size(), Point2d(1e6, 1e6))));     // outside the lens model
+    for (const Point2d& pixel : { Point2d(1e6, 1e6), Point2d(640.3, 480.7) })
+        for (const std::vector<Point3d>& points : { object, cloud(random) })
+            CHECK(nothing(points, std::vector<Point2d>(points.size(), pixel)));     // also outside the lens model
 
     const auto why = [&](const std::vector<Point3d>& o, const std::vector<Point2d>& p)
     { return thrown([&] { refractiveSolvePnP(o, p, camera, r, t); }); };

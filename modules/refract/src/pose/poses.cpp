@@ -113,35 +113,35 @@ double radiusOf(const std::vector<Point3d>& points)
 }
 
 /** SQPnP throws where an image is small (calib3d's POINT_VARIANCE_THRESHOLD). So small, it is to first order the magnified one of a
-target that is so many times nearer; what is left a fit mends. */
+target that is so many times nearer; what is left a fit mends. Infinite where all points are at one place. */
 double magnificationFor(const std::vector<Point2d>& normalized)
 {
-    const double REFUSED = 1.1e-5, MAGNIFIED = 1e-4;
+    const double REFUSED = 1.1e-5, MAGNIFIED = 1e-4, ROUNDING = 1e-24;
     Scalar mean, deviation;
     meanStdDev(normalized, mean, deviation);
     const double variance = deviation[0]*deviation[0] + deviation[1]*deviation[1];
-    return variance > REFUSED ? 1. : std::sqrt(MAGNIFIED/std::max(variance, DBL_MIN));
+    if (variance < ROUNDING*(1 + mean.dot(mean)))
+        return std::numeric_limits<double>::infinity();
+    return variance > REFUSED ? 1. : std::sqrt(MAGNIFIED/variance);
 }
 
-std::vector<Pose> closedFormPoses(const Camera& camera, const ImagePoints& points)
+//! By one of calib3d's methods; none where it finds none that is finite.
+std::vector<Pose> closedFormPoses(const CentralView& view, SolvePnPMethod method)
 {
-    const CentralView view(camera, points);
-    std::vector<Pose> poses;
-    const int rank = view.object.size() < 4 ? 0 : scatterRank(view.object);
-    if (rank < 2)
-        return poses;
-    const Matx33d back = view.bearings.turn.t();
     const double unit = radiusOf(view.object);      // IPPE finds no pose of targets that are millions across
     std::vector<Point3d> object;
     for (const Point3d& p : view.object)
         object.push_back(p*(1/unit));
-    std::vector<Mat> rvecs, tvecs;
-    const double magnification = rank == 2 ? 1. : magnificationFor(view.normalized);
+    const double magnification = method == SOLVEPNP_SQPNP ? magnificationFor(view.normalized) : 1.;
+    if (std::isinf(magnification))
+        return std::vector<Pose>();
     std::vector<Point2d> normalized;
     for (const Point2d& p : view.normalized)
         normalized.push_back(magnification*p);
-    solvePnPGeneric(object, normalized, Matx33d::eye(), noArray(), rvecs, tvecs, false,
-                    rank == 2 ? SOLVEPNP_IPPE : SOLVEPNP_SQPNP);
+    std::vector<Mat> rvecs, tvecs;
+    solvePnPGeneric(object, normalized, Matx33d::eye(), noArray(), rvecs, tvecs, false, method);
+    const Matx33d back = view.bearings.turn.t();
+    std::vector<Pose> poses;
     for (size_t i = 0; i < rvecs.size(); i++)
     {
         if (!checkRange(rvecs[i]) || !checkRange(tvecs[i]))
@@ -150,6 +150,18 @@ std::vector<Pose> closedFormPoses(const Camera& camera, const ImagePoints& point
         t[2] *= magnification;
         poses.push_back(poseOf({ back*rotationMatrix(Vec3d(rvecs[i].ptr<double>())), back*(unit*t) + view.bearings.centre }));
     }
+    return poses;
+}
+
+std::vector<Pose> closedFormPoses(const Camera& camera, const ImagePoints& points)
+{
+    const CentralView view(camera, points);
+    const int rank = view.object.size() < 4 ? 0 : scatterRank(view.object);
+    std::vector<Pose> poses;
+    if (rank == 2)
+        poses = closedFormPoses(view, SOLVEPNP_IPPE);
+    if (rank == 3 || (rank == 2 && poses.empty()))      // IPPE takes roots below zero of a plane exactly across the view
+        poses = closedFormPoses(view, SOLVEPNP_SQPNP);
     return poses;
 }
 
