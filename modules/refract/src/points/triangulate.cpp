@@ -110,7 +110,7 @@ void meet(const PlacedCameras& cameras, PixelBlock& block, int n, double* off)
 void checkSigma(double sigma, const char* name)
 {
     if (!(sigma >= 0) || !std::isfinite(sigma))
-        CV_Error_(Error::StsOutOfRange, ("%s is %g; it must not be negative", name, sigma));
+        CV_Error_(Error::StsOutOfRange, ("%s is %g; it must be 0 or more", name, sigma));
 }
 
 void triangulateBlock(const PlacedCameras& cameras, PixelBlock& block, int n, int flags)
