@@ -273,7 +273,7 @@ another colour. In water, blue and red are 3 to 6 px apart at the edge of a wide
 class CV_EXPORTS_W_SIMPLE GlassWindow
 {
 public:
-    //! No window.
+    //! No window: flat, without layers, normal (0, 0, 1), both indices 1; everything else is 0.
     CV_WRAP GlassWindow();
 
     /** @brief One pane, the camera in air.
@@ -832,8 +832,8 @@ CV_EXPORTS_W void refractiveUndistortImage(InputArray src, OutputArray dst, cons
 Valid is a new pixel that has a raw one, by the maps for the plane. As in calib3d the valid rectangle is between the borders of
 the raw image. Where the lens folds back, light is totally reflected, or the window or the plane ends within the image, it is
 the largest part of that in which all pixels are valid. Without a window cv::getOptimalNewCameraMatrix has other numbers: it
-looks at 9x9 places of the image, and takes lenses beyond their fold. For ordinary lenses it differs by some tenths of a percent
-(doc/upstream.md).
+looks at 9x9 places of the image, and takes lenses beyond their fold. For ordinary lenses it differs by some tenths of a
+percent.
 
 Throws if nothing bounds the valid part, as of a lens that looks 90 degrees from the axis on a border of its image, and with
 alpha > 0 if a raw pixel is 89 degrees or more from the axis: a pinhole camera does not show it.
@@ -1577,14 +1577,13 @@ a wand of known length at M/2 times gives M points, and M/2 lengths between them
 through a static scene. Everything is one maximum-likelihood fit with equal isotropic pixel noise, which is estimated. The
 points are eliminated (Schur complement), as in @cite Triggs2000, then the poses, by a sparse Cholesky: where each point is seen
 by few views that are near each other, as in a strip, time and memory grow with the number of views. Where all views see the
-same points, the cost of an iteration grows with the cube of their number (doc/performance.md has times). With many views and
-points, the form that takes a list of observations needs less memory.
+same points, the cost of an iteration grows with the cube of their number. With many views and points, the form that takes a
+list of observations needs less memory.
 
 The scene's frame is that of the first view, whose pose is fixed; with one view and without rvecs, tvecs it is the frame of
 camera 1. The scale comes from lengths, from R and T of several cameras if these are not free or have a covariance, or from the
-poses with GLASS_USE_POSES. Without any of them this throws, because refraction alone hardly determines the scale
-(doc/uncertainty.md has numbers, also for the normal, the distance and the thickness without a target). A parameter that is
-hardly determined is not refused: it has a large value in stdDeviations.
+poses with GLASS_USE_POSES. Without any of them this throws, because refraction alone hardly determines the scale. A parameter
+that is hardly determined is not refused: it has a large value in stdDeviations.
 
 @param imagePoints per camera, per view: Mx2 pixels of the M scene points, float32/float64. One coordinate NaN: half a pixel.
 Both NaN: not seen in that image. An empty array: there is no image.
