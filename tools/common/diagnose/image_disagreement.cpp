@@ -11,6 +11,7 @@
 #include <numeric>
 
 using namespace cv;
+using namespace cv::refract;
 
 namespace tools {
 
@@ -81,42 +82,16 @@ Matx33d throughWindow(const Matx33d& direct, const Matx33d& glass, const RigOpti
     return Matx33d(longer*direct(0, 0), 0, direct(0, 2), 0, longer*direct(1, 1), direct(1, 2), 0, 0, 1);
 }
 
-void seenPoints(const View& view, const std::vector<Point2d>& pixels, std::vector<Point3d>& object, std::vector<Point2d>& image)
-{
-    for (size_t i = 0; i < pixels.size(); i++)
-        if (seen(pixels[i]))
-        {
-            object.push_back(view.objectPoints[i]);
-            image.push_back(pixels[i]);
-        }
-}
-
-bool solveBoard(const View& view, const std::vector<Point2d>& pixels, const Matx33d& K, RigidTransform& pose)
-{
-    if (isSolid(view.objectPoints))
-        return false;
-    std::vector<Point3d> object;
-    std::vector<Point2d> image;
-    seenPoints(view, pixels, object, image);
-    Vec3d rvec, tvec;
-    if (image.size() < 6 || !solvePnP(object, image, K, noArray(), rvec, tvec, false, SOLVEPNP_IPPE))
-        return false;
-    solvePnPRefineLM(object, image, K, noArray(), rvec, tvec);
-    pose = transformOf(rvec, tvec);
-    return true;
-}
-
-//! Both poses of a flat board.
+//! Of a flat board before a pinhole, the best first.
 std::vector<RigidTransform> posesOfBoard(const View& view, const std::vector<Point2d>& pixels, const Matx33d& K)
 {
-    std::vector<Point3d> object;
-    std::vector<Point2d> image;
-    seenPoints(view, pixels, object, image);
-    std::vector<Mat> rvecs, tvecs;
-    solvePnPGeneric(object, image, K, noArray(), rvecs, tvecs, false, SOLVEPNP_IPPE);
     std::vector<RigidTransform> poses;
+    if (isSolid(view.objectPoints) || std::count_if(pixels.begin(), pixels.end(), seen) < 6)
+        return poses;
+    std::vector<Vec3d> rvecs, tvecs;
+    refractiveSolvePnPGeneric(view.objectPoints, pixels, K, noArray(), GlassWindow(), rvecs, tvecs);
     for (size_t i = 0; i < rvecs.size(); i++)
-        poses.push_back(transformOf(Vec3d(rvecs[i].ptr<double>()), Vec3d(tvecs[i].ptr<double>())));
+        poses.push_back(transformOf(rvecs[i], tvecs[i]));
     return poses;
 }
 
@@ -127,20 +102,16 @@ template<typename T> void addBytes(const T* from, size_t count, std::string& to)
 
 } // namespace
 
-bool BoardPoses::find(const View& view, const std::vector<Point2d>& pixels, const Matx33d& K, RigidTransform& pose)
+const std::vector<RigidTransform>& BoardPoses::of(const View& view, const std::vector<Point2d>& pixels, const Matx33d& K)
 {
-    if (pixels.empty())
-        return false;
     std::string key;
     addBytes(K.val, 9, key);
     addBytes(pixels.data(), pixels.size(), key);
     addBytes(view.objectPoints.data(), view.objectPoints.size(), key);
-    const auto entry = known_.emplace(key, Known());
-    Known& known = entry.first->second;
+    const auto entry = known_.emplace(key, std::vector<RigidTransform>());
     if (entry.second)
-        known.isFound = solveBoard(view, pixels, K, known.pose);
-    pose = known.pose;
-    return known.isFound;
+        entry.first->second = posesOfBoard(view, pixels, K);
+    return entry.first->second;
 }
 
 namespace {
@@ -160,10 +131,10 @@ std::vector<Both> boardsOf(const RigData& data, int camera, bool glass, const Ma
         return boards;
     for (const View& view : data.views)
     {
-        Both b{{}, {}, &view};
         const PerCamera<std::vector<Point2d>>& images = glass ? view.glass : view.direct;
-        if (poses.find(view, images[camera], K2, b.other) && poses.find(view, images[0], K1, b.one))
-            boards.push_back(b);
+        const std::vector<RigidTransform>&one = poses.of(view, images[0], K1), &other = poses.of(view, images[camera], K2);
+        if (!one.empty() && !other.empty())
+            boards.push_back({one[0], other[0], &view});
     }
     return boards;
 }
@@ -300,8 +271,8 @@ std::vector<int> viewsElsewhere(const RigData& data, const RigOptions& options, 
     for (const Both& board : boards)
     {
         std::vector<Both> all;
-        for (const RigidTransform& one : posesOfBoard(*board.view, board.view->glass[0], K1))
-            for (const RigidTransform& other : posesOfBoard(*board.view, board.view->glass[camera], K2))
+        for (const RigidTransform& one : poses.of(*board.view, board.view->glass[0], K1))
+            for (const RigidTransform& other : poses.of(*board.view, board.view->glass[camera], K2))
                 all.push_back({one, other, board.view});
         const std::vector<double> off = distancesFrom(place, pointsOf(all), K2(0, 0));
         if (!off.empty() && *std::min_element(off.begin(), off.end()) > most)

@@ -43,16 +43,11 @@ struct Disagreements
 class BoardPoses
 {
 public:
-    //! False: there is none.
-    bool find(const View& view, const std::vector<cv::Point2d>& pixels, const cv::Matx33d& K, RigidTransform& pose);
+    //! The best first; empty: there is none.
+    const std::vector<RigidTransform>& of(const View& view, const std::vector<cv::Point2d>& pixels, const cv::Matx33d& K);
 
 private:
-    struct Known
-    {
-        RigidTransform pose;
-        bool isFound = false;
-    };
-    std::unordered_map<std::string, Known> known_;      // by the bytes of pinhole, pixels and board
+    std::unordered_map<std::string, std::vector<RigidTransform>> known_;    // by the bytes of pinhole, pixels and board
 };
 
 Disagreements disagreementsOf(const RigData& data, const RigOptions& options, const RoughLenses& lenses, BoardPoses& poses);
