@@ -92,6 +92,69 @@ TEST_CASE("The RMS of the lines is the pixel noise, the covariance is the sample
     CHECK(mahalanobis == Approx(2).epsilon(0.2));       // chi^2 with two degrees of freedom
 }
 
+TEST_CASE("The covariance holds where points near the centre move less than their noise", "[calibrate_normal]")
+{
+    struct { double thickness, tilt, sigma; } rigs[] = { { 5, 0, 0.1 }, { 20, 0, 0.3 }, { 20, 0.35, 0.3 }, { 12, 0.15, 0.1 } };
+    for (const auto& rig : rigs)
+    {
+        double mahalanobis = 0;
+        int count = 0;
+        const int runs = trials(300);
+        for (int run = 0; run < runs; run++)
+        {
+            Random random(5000 + run);
+            const double azimuth = random.uniform(0, 2*CV_PI);
+            const Vec3d truth(std::sin(rig.tilt)*std::cos(azimuth), std::sin(rig.tilt)*std::sin(azimuth), std::cos(rig.tilt));
+            const Ptr<RefractiveCamera> camera = RefractiveCamera::create(Matx33d(1200, 0, 640, 0, 1200, 480, 0, 0, 1), noArray(),
+                                                                          GlassWindow(truth, rig.thickness, 1.52, 20));
+            ObjectViews views;
+            for (int i = 0; i < 4; i++)
+                views.push_back(board(8, 6, 35));
+            const CalibrationScene scene = makeScene(camera, views, random, rig.sigma);
+            Mat normal, covariance, inverse;
+            try { calibrateGlassNormal(scene.direct, scene.refracted, camera, normal, noArray(), covariance); }
+            catch (const CalibrationError&) { continue; }
+            invert(covariance, inverse, DECOMP_SVD);
+            const Mat error = normal - Mat(truth);
+            mahalanobis += Mat(error.t()*inverse*error).at<double>(0);
+            count++;
+        }
+        CAPTURE(rig.thickness, rig.tilt, rig.sigma, count, seed());
+        printNumber("squares of the normal's error over stated, two degrees of freedom", mahalanobis/count, "");
+        CHECK(count >= 0.98*runs);
+        CHECK(mahalanobis/count == Approx(2).epsilon(0.25));
+    }
+}
+
+TEST_CASE("Points on one line through the centre do not determine the normal, whatever their noise says", "[calibrate_normal]")
+{
+    int refused = 0;
+    const int runs = trials(200);
+    for (int run = 0; run < runs; run++)
+    {
+        Random random(7000 + run);
+        const double azimuth = random.uniform(0, 2*CV_PI), line = random.uniform(0, 2*CV_PI);
+        const Vec3d n(std::sin(0.35)*std::cos(azimuth), std::sin(0.35)*std::sin(azimuth), std::cos(0.35));
+        const Ptr<RefractiveCamera> camera = RefractiveCamera::create(Matx33d(1000, 0, 640, 0, 1000, 480, 0, 0, 1), noArray(),
+                                                                      GlassWindow(n, 20, 1.52, 30));
+        Vec3d along(std::cos(line), std::sin(line), 0);
+        along = normalize(along - along.dot(n)*n);
+        std::vector<Point3d> points;
+        for (int i = 1; i <= 20; i++)
+            points.push_back(Point3d(700*n + 15.*i*along));
+        std::vector<Point2d> direct, refracted;
+        refractiveProjectPoints(points, Vec3d(), Vec3d(), RefractiveCamera::create(camera->cameraMatrix(), noArray()), direct);
+        refractiveProjectPoints(points, Vec3d(), Vec3d(), camera, refracted);
+        for (int i = 0; i < 20; i++)
+            for (std::vector<Point2d>* pixels : { &direct, &refracted })
+                (*pixels)[i] += Point2d(random.normal(0.05), random.normal(0.05));
+        Mat normal;
+        refused += !thrown([&] { calibrateGlassNormal(PixelViews(1, direct), PixelViews(1, refracted), camera, normal); }).empty();
+    }
+    CAPTURE(refused, runs, seed());
+    CHECK(refused >= 0.95*runs);
+}
+
 TEST_CASE("Pairs with NaN are left out, overloads and types agree", "[calibrate_normal]")
 {
     Random random(120);

@@ -1238,8 +1238,8 @@ CV_EXPORTS_AS(refractiveReprojectImageTo3DExtended) void refractiveReprojectImag
 
 The direct bearing, the refracted bearing and the normal are coplanar for every point at any depth, for all layers and media.
 The estimate is the vector closest to all these planes. First the lens model is inverted. The method uses bearings, so that the
-distortion centre may be at infinity. Each pair is weighted by its propagated noise, iteratively. Thickness and index need not
-be known.
+distortion centre may be at infinity. Each pair is weighted by its propagated noise, iteratively; next to the centre a movement
+is all noise, which tells nothing and counts as that. Thickness and index need not be known.
 
 @param imagePointsDirect one array of N_i points per view, seen without the window.
 @param imagePointsRefracted the same points through the window. A pair with a NaN coordinate is ignored.

@@ -8,6 +8,7 @@
 #include "arrays/arrays.hpp"
 #include "start/incremental_start.hpp"
 #include "start/inliers.hpp"
+#include "start/rig_assembly.hpp"
 #include "start/sealed_start.hpp"
 #include "start/window_start.hpp"
 #include "window/parameters.hpp"
@@ -196,7 +197,10 @@ FitOutcome findStart(const Rig& rig, RigTask& task, RigStart& start, std::vector
     }
     else
     {
-        start = { rig, posesWithoutWindow(rig, views, task.knownPoses) };
+        start = { rig, std::vector<Pose>() };
+        if (flags & GLASS_FREE_EXTRINSICS)
+            placeByViews(views, task.knownPoses, start.rig);
+        start.poses = posesWithoutWindow(start.rig, views, task.knownPoses);
         // A window at a known distance is found from where it is given, in the fit that finds the lens.
         outcome = startWindows(start.rig, views, start.poses, flags & GLASS_FREE_DISTANCE ? flags : task.flags, minima);
         placeTargets(start.rig, views, searchesLens ? 0 : flags, start.poses);

@@ -15,7 +15,13 @@ variance n^T S n, S = G G^T with the 3x4 matrix G = da/d(pixels); so
 
 is, to first order, the distance in pixels of the pair (4 coordinates) to the nearest pair that is collinear with the
 centre. The start is the smallest eigenvector of sum a a^T / tr S; Gauss-Newton on the sphere then minimises sum e^2.
-A pair next to the centre moves little and its direction is all noise; e gives it no more weight than that. */
+A pair next to the centre moves little and its direction is all noise; e gives it no more weight than that.
+
+The derivatives J of e hang on the movements that were observed, noise and all, which is no information. Given e, the noise of J
+has the covariance sigma^2 N with N = B^T (S - S n n^T S/(n^T S n)) B / (n^T S n), B the tangent basis. It grows without bound next
+to the centre; so a second fit weights a pair by w = k^2/(k^2 + sigma^2 tr N), where k is the usual length of J. Its information is
+H = sum w (J J^T - sigma^2 N) and its covariance sigma^2 H^-1 (sum w^2 J J^T) H^-1, as of any model with errors in its variables
+(Fuller 1987). */
 
 #include "start/normal_from_pairs.hpp"
 #include "arrays/arrays.hpp"
@@ -32,6 +38,7 @@ struct Pair
     Vec3d a;            //!< refracted x direct bearing
     Matx33d S;          //!< covariance of a for unit pixel noise
     Vec2d shift;        //!< pixels from the direct to the refracted point
+    double weight = 1;
 };
 
 Matx33d crossMatrix(const Vec3d& v)
@@ -98,6 +105,23 @@ Matx32d tangentBasis(const Vec3d& n)
     return Matx32d(b1[0], b2[0], b1[1], b2[1], b1[2], b2[2]);
 }
 
+//! A pair's error, its derivative by the two tangent coordinates, and the covariance of that for unit pixel noise.
+struct PairError
+{
+    PairError(const Pair& pair, const Vec3d& n, const Matx32d& basis)
+    {
+        const Vec3d Sn = pair.S*n;
+        const double s2 = n.dot(Sn), s = std::sqrt(s2);
+        const Vec2d along = basis.t()*Sn;
+        e = n.dot(pair.a)/s;
+        J = basis.t()*(pair.a/s - (e/s2)*Sn);
+        N = (1/s2)*(basis.t()*pair.S*basis - (1/s2)*(along*along.t()));
+    }
+    double e;
+    Vec2d J;
+    Matx22d N;
+};
+
 struct NormalEquations
 {
     double cost = 0;
@@ -110,12 +134,10 @@ NormalEquations linearize(const std::vector<Pair>& pairs, const Vec3d& n, const 
     NormalEquations equations;
     for (const Pair& pair : pairs)
     {
-        const Vec3d Sn = pair.S*n;
-        const double s2 = n.dot(Sn), s = std::sqrt(s2), e = n.dot(pair.a)/s;
-        const Vec2d J = basis.t()*(pair.a/s - (e/s2)*Sn);
-        equations.cost += e*e;
-        equations.A += J*J.t();
-        equations.b -= J*e;
+        const PairError error(pair, n, basis);
+        equations.cost += pair.weight*error.e*error.e;
+        equations.A += pair.weight*(error.J*error.J.t());
+        equations.b -= pair.weight*error.e*error.J;
     }
     return equations;
 }
@@ -153,6 +175,76 @@ bool refineNormal(const std::vector<Pair>& pairs, Vec3d& n, Matx32d& basis, Norm
     return false;
 }
 
+//! Without weights: all have the same noise.
+double sumOfSquares(const std::vector<Pair>& pairs, const Vec3d& n, const Matx32d& basis)
+{
+    double sum = 0;
+    for (const Pair& pair : pairs)
+        sum += std::pow(PairError(pair, n, basis).e, 2);
+    return sum;
+}
+
+//! By what of their derivatives is not noise.
+void weigh(std::vector<Pair>& pairs, const Vec3d& n, const Matx32d& basis, double variance)
+{
+    std::vector<double> squares, noise;
+    for (const Pair& pair : pairs)
+    {
+        const PairError error(pair, n, basis);
+        squares.push_back(error.J.dot(error.J));
+        noise.push_back(variance*trace(error.N));
+    }
+    const double usual = median(squares);
+    for (size_t i = 0; i < pairs.size(); i++)
+        pairs[i].weight = usual/(usual + noise[i]);
+}
+
+//! Of the two tangent coordinates; zero where what is left of the derivatives without noise may be chance.
+Matx22d tangentCovariance(const std::vector<Pair>& pairs, const Vec3d& n, const Matx32d& basis, double variance)
+{
+    const double CLEAR = 3;         // standard deviations of the noise's part, a sum of squares
+    if (std::isnan(variance))
+        return Matx22d::all(variance);
+    Matx22d information = Matx22d::zeros(), score = Matx22d::zeros(), vectors;
+    for (const Pair& pair : pairs)
+    {
+        const PairError error(pair, n, basis);
+        information += pair.weight*(error.J*error.J.t() - variance*error.N);
+        score += pair.weight*pair.weight*(error.J*error.J.t());
+    }
+    Vec2d values;
+    eigen(information, values, vectors);
+    const Vec2d weakest(vectors.row(1).val);
+    double squares = 0;
+    for (const Pair& pair : pairs)
+        squares += std::pow(pair.weight*variance*weakest.dot(PairError(pair, n, basis).N*weakest), 2);
+    if (values[1] <= CLEAR*std::sqrt(2*squares))
+        return Matx22d::zeros();
+    const Matx22d inverse = information.inv(DECOMP_SVD);
+    return variance*(inverse*score*inverse);
+}
+
+/** Whether normals far off are nearly as likely, as where all points are on one line through the centre, which may be anywhere on it:
+then the covariance is that of some dent of the errors.
+@param direction unit, tangent, the least determined one; sigma along it
+@param cost at n */
+bool isFlat(const std::vector<Pair>& pairs, const Vec3d& n, const Vec3d& direction, double sigma, double variance, double cost)
+{
+    const double FAR = 4, LEAST = 2.5, STEP = 1.25;       // standard deviations, and what they should be beyond these; of one to the next
+    const Vec3d across = n.cross(direction);
+    for (double angle = FAR*sigma; angle < CV_PI/2; angle *= STEP)
+        for (double side : { -angle, angle })
+        {
+            const Vec3d there = std::cos(side)*n + std::sin(side)*direction;
+            const Matx32d basis(across[0], 0, across[1], 0, across[2], 0);      // one step to the best beside it
+            const NormalEquations equations = linearize(pairs, there, basis);
+            const double gain = equations.A(0, 0) > 0 ? equations.b[0]*equations.b[0]/equations.A(0, 0) : 0;
+            if (equations.cost - gain < cost + LEAST*LEAST*variance)
+                return true;
+        }
+    return false;
+}
+
 double shiftRms(const std::vector<Pair>& pairs)
 {
     double sum = 0;
@@ -172,8 +264,7 @@ NormalEstimate refusal(const String& why)
 
 NormalEstimate normalFromPairs(const Camera& camera, const PixelViews& direct, const PixelViews& refracted)
 {
-    const std::vector<Pair> pairs = readPairs(camera.lens(), direct, refracted);
-    const double count = (double)pairs.size();
+    std::vector<Pair> pairs = readPairs(camera.lens(), direct, refracted);
     if (pairs.size() < 2)
         return refusal(format("%d points were seen both without and with the window; at least 2 are needed",
                               (int)pairs.size()));
@@ -189,23 +280,34 @@ NormalEstimate normalFromPairs(const Camera& camera, const PixelViews& direct, c
                        "views");
     if (!refineNormal(pairs, n, basis, solution))
         return refusal("the iteration did not converge");
+    const double count = (double)pairs.size(), left = count > 2 ? count - 2 : std::numeric_limits<double>::quiet_NaN();
+    if (count > 2)
+    {
+        weigh(pairs, n, basis, sumOfSquares(pairs, n, basis)/left);
+        if (!refineNormal(pairs, n, basis, solution))
+            return refusal("the iteration did not converge");
+    }
+    const double squares = sumOfSquares(pairs, n, basis);
 
     // The movement must stand out from what remains across the lines, else the lines' directions are noise.
     NormalEstimate estimate;
-    estimate.rms = std::sqrt(solution.cost/count);
+    estimate.rms = std::sqrt(squares/count);
     if (shift < 3*estimate.rms)
         return refusal(format("the points move by %.3g px (RMS) through the window, but miss the lines through the centre "
                               "by %.3g px; was the target moved within a pair?", shift, estimate.rms));
-    const double variance = count > 2 ? solution.cost/(count - 2) : std::numeric_limits<double>::quiet_NaN();
-    const Matx22d tangentCovariance = solution.A.inv(DECOMP_SVD);
+    const Matx22d covariance = tangentCovariance(pairs, n, basis, squares/left);
     Vec2d principal;
-    eigen(tangentCovariance, principal);
-    const double sigma = std::sqrt(principal[0]*variance);
+    Matx22d directions;
+    eigen(covariance, principal, directions);
+    const double sigma = std::sqrt(principal[0]);
     if (sigma > 0.5)
         return refusal(format("its standard deviation is %.0f degrees; take more views, or a target that fills more of the "
                               "image", sigma*180/CV_PI));
+    if (sigma == 0 || isFlat(pairs, n, basis*Vec2d(directions.row(0).val), sigma, squares/left, solution.cost))
+        return refusal("along one direction the points move no more than the pixels' noise makes them; use a target that fills more "
+                       "of the image, or more views");
     estimate.normal = n[2] < 0 ? -n : n;
-    estimate.covariance = variance*(basis*tangentCovariance*basis.t());
+    estimate.covariance = basis*covariance*basis.t();
     return estimate;
 }
 

@@ -46,7 +46,7 @@ double costAt(const CameraHypothesis& hypothesis, const Pose& extrinsics, const 
         if (!places[view].found || !hypothesis.poses[view].found)
             continue;
         const TransformWithDerivatives toCamera(inCamera(places[view], extrinsics));
-        for (size_t i = 0; i < object[view].size(); i++)
+        for (size_t i = 0; i < seen.refracted[view].size(); i++)       // none: a direct image alone
         {
             const Point2d& pixel = seen.refracted[view][i];
             if (!isWhole(pixel))
@@ -203,6 +203,43 @@ bool assemble(const Rig& given, const std::vector<CameraHypothesis>& cameras, co
     if (flags & GLASS_FREE_DISTANCE)
         giveToNearest(start.rig);
     return transferToOthers(start.rig).converged();
+}
+
+//! Where a camera by itself sees the targets.
+static CameraHypothesis alone(const Camera& camera, const RigViews& all, int c)
+{
+    const Rig rig = { { camera }, { 0 }, { Pose() } };
+    RigViews views = all;
+    views.cameras.assign(1, all.cameras[c]);
+    std::vector<Pose> poses = posesWithoutWindow(rig, views, std::vector<Pose>());
+    addPosesThroughWindow(rig, views, poses);
+    return { camera, poses };
+}
+
+bool placeByViews(const RigViews& views, const std::vector<Pose>& known, Rig& rig)
+{
+    const double CLEARLY = 0.5;         // part of the pixels that are left where the camera is given
+    std::vector<CameraHypothesis> cameras;
+    for (int c = 0; c < rig.count(); c++)
+        cameras.push_back(alone(rig.cameras[c], views, c));
+    for (size_t view = 0; view < known.size(); view++)
+        if (known[view].found)
+            cameras[0].poses[view] = known[view];
+    const Placement placement(cameras, views, 0);
+    Rig placed = rig;
+    bool isBetter = false;
+    for (int c = 1; c < rig.count(); c++)
+    {
+        const auto cost = [&](const Pose& place) { return costAt(cameras[c], place, placement.poses, views.cameras[c], views.object); };
+        if (!placement.places[c].found || !(cost(placement.places[c]) < CLEARLY*cost(rig.extrinsics[c])))
+            continue;
+        placed.extrinsics[c] = placement.places[c];
+        isBetter = true;
+    }
+    if (!isBetter || !transferToOthers(placed).converged())
+        return false;
+    rig = placed;
+    return true;
 }
 
 }} // namespace

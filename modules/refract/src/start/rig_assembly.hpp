@@ -22,6 +22,12 @@ struct CameraHypothesis
 bool assemble(const Rig& given, const std::vector<CameraHypothesis>& cameras, const std::vector<int>& windowFrom,
               const RigViews& views, int flags, RigStart& start);
 
+/** Moves cameras to where the views that they have in common with others show them, if the images fit there clearly better than where
+they are given. From far off a fit turns a flat target to its other pose, or comes to no end.
+@param known poses of the targets; empty: none is
+@return whether any was moved */
+bool placeByViews(const RigViews& views, const std::vector<Pose>& known, Rig& rig);
+
 /** The cameras of a fit, each with the targets in its own frame.
 @param before which views each saw well enough */
 std::vector<CameraHypothesis> camerasOf(const Minimum& minimum, const std::vector<CameraHypothesis>& before);
