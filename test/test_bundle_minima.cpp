@@ -1,7 +1,7 @@
 // This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
 // SPDX-License-Identifier: Apache-2.0
 
-// Bundles of a wand in which one camera tells half of each pixel: a length and a ray meet twice, so that points have two minima.
+// Bundles with other minima than the right one: a length and a ray meet twice, and so do a ray and the bent sheet that half a pixel sees.
 #include "bundle_scenes.hpp"
 #include "round_scenes.hpp"
 
@@ -69,6 +69,23 @@ struct TrioCall : BundleCall
         }
         return squaredMahalanobis(errors, covariance, rows)/(double)rows.size();
     }
+
+    //! How far the worst point is off, in its standard deviations. @param told how many points have a place
+    double worstPoint(const BundleScene& scene, int& told) const
+    {
+        double worst = 0;
+        told = 0;
+        for (size_t i = 0; i < points.size(); i++)
+        {
+            if (std::isnan(points[i].x))
+                continue;
+            told++;
+            const Vec3d off = points[i] - scene.points[i];
+            for (int k = 0; k < 3; k++)
+                worst = std::max(worst, std::abs(off[k])/pointDeviations.at<double>((int)i, k));
+        }
+        return worst;
+    }
 };
 
 const double OFF = 0.15;        // degrees, and a millimetre
@@ -126,5 +143,117 @@ TEST_CASE("Wands before half a camera: how many are right, and the errors over w
                   << TRIALS << ", squared error of R and T over stated " << sum/TRIALS << " (seed " << seed() << ")\n";
         CHECK(right == TRIALS);
         CHECK(std::abs(sum/TRIALS - 1) < 4*std::sqrt(2./(12*TRIALS)));      // of twelve degrees of freedom
+    }
+}
+
+namespace {
+
+//! So many observations lose u or v.
+void forgetSome(BundleScene& scene, Random& random, double part)
+{
+    for (PixelViews& views : scene.pixels)
+        for (std::vector<Point2d>& view : views)
+            for (Point2d& pixel : view)
+                if (random.uniform(0, 1) < part)
+                    (random.uniform(0, 1) < 0.5 ? pixel.x : pixel.y) = NaN;
+}
+
+//! How a kind of bundles ends, of so many trials.
+struct Ends
+{
+    int count = 0, failed = 0, wrongCameras = 0, wrongPoints = 0, told = 0;
+    double sum = 0;
+
+    void add(double overStated, double worstPoint, int points)
+    {
+        const double CAMERAS = 10, POINT = 8;       // of two degrees of freedom or more; standard deviations of one of hundreds
+        count++;
+        wrongCameras += !(overStated < CAMERAS);
+        wrongPoints += !(worstPoint < POINT);
+        told += points;
+        sum += overStated;
+    }
+    void print(const char* what) const
+    {
+        std::cout << "[numbers] " << what << ": of " << count << " " << failed << " fail, " << wrongCameras << " wrong cameras, "
+                  << wrongPoints << " with wrong points, " << told/std::max(count, 1) << " points told, squared error over stated "
+                  << sum/std::max(count, 1) << " (seed " << seed() << ")\n";
+    }
+};
+
+//! Two cameras, a wand, every second pixel half.
+void fitHalfWand(int number, Ends& ends)
+{
+    Random random(9000 + number);
+    const RigTruth rig = makeRig(2, { 0, 1 }, 1.33, 0.25);
+    BundleScene scene = makeWandScene(rig, 40, random, 0.1);
+    forgetSome(scene, random, 0.5);
+    TrioCall call(rig, scene, random, 1);
+    int told;
+    call.run(GLASS_FREE_EXTRINSICS);
+    const double worst = call.worstPoint(scene, told);
+    ends.add(call.overStated(rig), worst, told);
+}
+
+//! Three cameras of which a few see each point, many of them half.
+void fitHalfScene(int number, Ends& ends)
+{
+    Random random(11000 + number);
+    const RigTruth rig = makeRig(3, { 0, 1, 2 }, 1.33, 0.25);
+    BundleScene scene = makeMovingScene(rig, 4, 60, random, 0.1, 0.6);
+    for (int i = 2; i < 12; i += 2)
+        scene.lengths.push_back({ (double)i, i + 1., norm(scene.points[i] - scene.points[i + 1]) + random.normal(WAND_SIGMA), WAND_SIGMA });
+    forgetSome(scene, random, 0.7);
+    TrioCall call(rig, scene, random, 0.3);
+    int told;
+    call.run(GLASS_FREE_EXTRINSICS);
+    const double worst = call.worstPoint(scene, told);
+    ends.add(call.overStated(rig), worst, told);
+}
+
+template<class Fit>
+Ends endsOf(const char* what, int count, Fit fit)
+{
+    Ends ends;
+    for (int number = 1; number <= count; number++)
+        try
+        {
+            fit(number, ends);
+        }
+        catch (const cv::Exception& e)
+        {
+            ends.count++;
+            ends.failed++;
+            UNSCOPED_INFO(what << ", number " << number << ": " << e.what());
+        }
+    ends.print(what);
+    return ends;
+}
+
+} // namespace
+
+TEST_CASE("What halves leave undecided is told as that, and nothing else", "[bundle][half]")
+{
+    const Ends all[] = { endsOf("wand, two cameras, every second pixel half", trials(50), fitHalfWand),
+                         endsOf("scene, three cameras, most pixels half", trials(30), fitHalfScene) };
+    for (const Ends& ends : all)
+    {
+        CHECK(ends.failed <= 0.02*ends.count);          // said, not wrong
+        CHECK(ends.wrongCameras == 0);
+        CHECK(ends.wrongPoints == 0);
+    }
+    CHECK(all[0].told > 50*all[0].count);             // of 80, of which 60 have three coordinates or more
+}
+
+// Run with [.half-pixel-minima].
+TEST_CASE("Halves: how many end in other minima, and the errors over what is stated", "[.half-pixel-minima]")
+{
+    const Ends all[] = { endsOf("wand, two cameras, every second pixel half", trials(200), fitHalfWand),
+                         endsOf("scene, three cameras, most pixels half", trials(200), fitHalfScene) };
+    for (const Ends& ends : all)
+    {
+        CHECK(ends.failed <= 0.02*ends.count);
+        CHECK(ends.wrongCameras <= 0.01*ends.count);
+        CHECK(ends.wrongPoints <= 0.01*ends.count);
     }
 }

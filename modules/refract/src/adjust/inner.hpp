@@ -21,10 +21,10 @@ bool optimizePoints(Problem& problem, double& squaredError);        //!< of a sc
 
 /** A scene's clusters each by itself: the squares of each at its best, which is where it is then; infinite where one of its points has
 no image to begin with, and stays there.
-@param onlyTied those of several points; the others stay where they are, with squares of 0 */
-std::vector<double> optimizeClusters(Problem& problem, bool onlyTied);
-//! The information of the coordinates of each cluster of several points where it is, the cameras staying.
-std::vector<Eigen::MatrixXd> informationOfTied(const Problem& problem);
+@param some if not empty, which clusters; the others stay where they are, with squares of 0 */
+std::vector<double> optimizeClusters(Problem& problem, const std::vector<int>& some = std::vector<int>());
+//! The information of the coordinates of some clusters where they are, the cameras staying; of the others nothing.
+std::vector<Eigen::MatrixXd> informationOfClusters(const Problem& problem, const std::vector<int>& some);
 
 //! All values of the inner blocks, one block after the other: to come back to.
 Eigen::VectorXd innerValues(const Problem& problem);

@@ -141,24 +141,19 @@ void forEachOf(const std::vector<int>& clusters, const Body& body)
     });
 }
 
-//! Those of one point alone are left out if only the tied ones are asked for.
-std::vector<int> clustersOf(const Problem& problem, bool onlyTied)
-{
-    std::vector<int> some;
-    for (int i = 0; i < (int)problem.scene().clusters().size(); i++)
-        if (!onlyTied || problem.scene().clusters()[i].points.size() > 1)
-            some.push_back(i);
-    return some;
-}
-
 } // namespace
 
-std::vector<double> optimizeClusters(Problem& problem, bool onlyTied)
+std::vector<double> optimizeClusters(Problem& problem, const std::vector<int>& some)
 {
     const int ROUNDS = 50;
     std::vector<Cluster>& clusters = problem.scene().clusters();
     std::vector<ClusterSearch> searches(clusters.size());
-    std::vector<int> left = clustersOf(problem, onlyTied);
+    std::vector<int> left = some;
+    if (some.empty())
+    {
+        left.resize(clusters.size());
+        std::iota(left.begin(), left.end(), 0);
+    }
     const int count = std::max((int)left.size(), 1);
     SceneRows rows(problem);
     for (int round = 0; round < ROUNDS && !left.empty(); round++)
@@ -200,20 +195,19 @@ std::vector<double> optimizeClusters(Problem& problem, bool onlyTied)
     return squares;
 }
 
-std::vector<MatrixXd> informationOfTied(const Problem& problem)
+std::vector<MatrixXd> informationOfClusters(const Problem& problem, const std::vector<int>& some)
 {
     SceneRows rows(problem);
-    const std::vector<int> tied = clustersOf(problem, true);
-    rows.update(tied);
+    rows.update(some);
     std::vector<MatrixXd> matrices(problem.scene().clusters().size());
-    for (int i : tied)
+    for (int i : some)
         matrices[i] = rows.squaresOf(i).matrix;
     return matrices;
 }
 
 bool optimizePoints(Problem& problem, double& squaredError)
 {
-    const std::vector<double> squares = optimizeClusters(problem, false);
+    const std::vector<double> squares = optimizeClusters(problem);
     squaredError = std::accumulate(squares.begin(), squares.end(), problem.squaredOuterPriors());
     return std::isfinite(squaredError);
 }

@@ -112,7 +112,7 @@ where images and lengths agree, the cameras staying.
 bool SceneOutliers::bringBackWhatLengthsAllow(const std::vector<Point3d>& points, const Masks& before, double scale, Masks& inliers)
 {
     problem_.setPoints(points, inliers);
-    optimizeClusters(problem_, false);
+    optimizeClusters(problem_);
     std::vector<Point3d> kept = problem_.scene().points();
     problem_.placePoints(kept);
     const std::vector<std::vector<double> > errors = problem_.pixelErrors();

@@ -17,6 +17,7 @@ public:
     //! @param seenCount observations that the caller gave
     RobustFit(Problem& problem, Outliers& outliers, bool isRobust, int seenCount, const TermCriteria& criteria);
 
+    bool isRobust() const { return isRobust_; }
     FitOutcome run();
     //! Towards the minimum from far, with a few iterations.
     FitOutcome approach();

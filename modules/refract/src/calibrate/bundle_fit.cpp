@@ -16,17 +16,6 @@ namespace cv { namespace refract {
 
 namespace {
 
-bool usePointsThatStartedBadly(Problem& problem)
-{
-    const std::vector<Point3d> before = problem.scene().points(), now = startPoints(problem, before);
-    const auto count = [](const std::vector<Point3d>& points)
-    { return std::count_if(points.begin(), points.end(), [](const Point3d& p) { return std::isfinite(p.x); }); };
-    if (count(now) == count(before))
-        return false;
-    problem.setPoints(now, Masks());
-    return true;
-}
-
 FitOutcome adjust(Problem& problem, const BundleTask& task)
 {
     const bool isRobust = (task.flags & GLASS_ROBUST) != 0;
@@ -44,10 +33,7 @@ FitOutcome adjust(Problem& problem, const BundleTask& task)
     RobustFit fit(problem, outliers, isRobust, problem.pointCount(), criteria), another = fit;
     if (isRobust)
         return searchRobustBundle(problem, outliers, fit, another);
-    outcome = searchBundle(problem, outliers, fit);
-    if (outcome.isUsable() && usePointsThatStartedBadly(problem))
-        outcome = RobustFit(problem, outliers, false, problem.pointCount(), criteria).run();
-    return outcome;
+    return searchBundle(problem, outliers, fit);
 }
 
 void describe(const Problem& problem, BundleFit& fit)

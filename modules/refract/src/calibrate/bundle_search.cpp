@@ -4,7 +4,7 @@
 
 /* Lengths and halves of pixels leave minima beside the right one. A point in a wrong one drags the cameras along, until all fit badly
 and none is left alone. So cameras come near by points of which no other minimum is nearly as low, and all points go to their least one
-whenever the cameras have moved. */
+whenever the cameras have moved. What is not decided in the end is not told. */
 
 #include "calibrate/bundle_search.hpp"
 #include "adjust/point_minima.hpp"
@@ -17,6 +17,7 @@ namespace cv { namespace refract {
 
 namespace {
 
+const double LEAD = 25;         // of a minimum that is decided, in variances of a residual
 const int ROUNDS = 10;          // of points that go to other minima
 
 void holdMediaAndLenses(Problem& problem, bool isHeld)
@@ -72,26 +73,63 @@ int countFinite(const std::vector<Point3d>& points)
     return (int)std::count_if(points.begin(), points.end(), [](const Point3d& point) { return std::isfinite(point.x); });
 }
 
-/** Points of which another minimum is nearly as low have no say for a while; then all are where the rest has them least.
-@param fit what is done without them
-@return how many points the others are; 0: there are no such points, or the others do not determine what is free */
-template<class Fit>
-int decideByPointsOfOneMinimum(Problem& problem, const SceneOutliers& outliers, Fit fit)
+//! With outliers all are used, as none is known to be right.
+void useWhatTells(Problem& problem, const std::vector<Point3d>& points, const RobustFit& fit)
 {
-    const std::vector<Point3d> some = pointsOfOneMinimum(problem), all = problem.scene().points();
-    const int count = countFinite(some);
-    if (count == countFinite(all))
+    problem.setPoints(points, Masks());
+    if (!fit.isRobust())
+        problem.setPoints(pointsThatTell(problem), Masks());
+}
+
+//! Of those that started badly, where the cameras are now have them.
+std::vector<Point3d> withPointsThatStartedBadly(const Problem& problem)
+{
+    const std::vector<Point3d> before = problem.scene().points();
+    std::vector<Point3d> points = startPoints(problem, before);
+    for (size_t i = 0; i < before.size(); i++)
+        if (std::isfinite(before[i].x))
+            points[i] = before[i];
+    return points;
+}
+
+/** Uses points of which no other minimum is nearly as low; where these are too few to determine what is free, also those that lead by less.
+@param all where all points are then
+@return how many are used; 0: all, as there are no others, or nothing is determined without them */
+int usePointsOfOneMinimum(Problem& problem, const SceneOutliers& outliers, std::vector<Point3d>& all)
+{
+    const int SPARE = 5;            // equations: fewer would not show that a point is wrong
+    for (double lead : { LEAD, 0.2*LEAD, 0.04*LEAD, 0.01*LEAD })
+    {
+        const std::vector<Point3d> some = pointsOfOneMinimum(problem, lead);
+        all = problem.scene().points();
+        const int count = countFinite(some);
+        if (count == countFinite(all))
+            return 0;
+        problem.setPoints(some, Masks());
+        if (count > 0 && outliers.checkWhatIsLeft().converged() && problem.freedom() > SPARE)
+            return count;
+        problem.setPoints(all, Masks());
+    }
+    return 0;
+}
+
+/** Points of which another minimum is nearly as low have no say for a while; then all are where the rest has them least.
+@param step what is done without them
+@return how many points the others are; 0: nothing was done */
+template<class Step>
+int decideByPointsOfOneMinimum(Problem& problem, const SceneOutliers& outliers, const RobustFit& fit, Step step)
+{
+    std::vector<Point3d> all;
+    const int count = usePointsOfOneMinimum(problem, outliers, all);
+    if (count == 0)
         return 0;
-    problem.setPoints(some, Masks());
-    const bool isEnough = count > 0 && outliers.checkWhatIsLeft().converged();
-    if (isEnough)
-        fit();
-    std::vector<Point3d> now = isEnough ? startPoints(problem, problem.scene().points()) : all;
+    step();
+    std::vector<Point3d> now = startPoints(problem, problem.scene().points());
     for (size_t i = 0; i < now.size(); i++)
         now[i] = std::isfinite(now[i].x) ? now[i] : all[i];
-    problem.setPoints(startPoints(problem, now), Masks());
+    useWhatTells(problem, startPoints(problem, now), fit);
     moveToLeastMinima(problem);
-    return isEnough ? count : 0;
+    return count;
 }
 
 //! From where the start is.
@@ -100,11 +138,19 @@ FitOutcome approach(Problem& problem, const SceneOutliers& outliers, RobustFit& 
     for (int used = 0, before = -1; used > before; )
     {
         before = used;
-        used = decideByPointsOfOneMinimum(problem, outliers, [&]() { fit.approach(); });
+        used = decideByPointsOfOneMinimum(problem, outliers, fit, [&]() { fit.approach(); });
     }
     FitOutcome outcome = fit.approach();
-    for (int round = 0; round < ROUNDS && outcome.isUsable() && moveToLeastMinima(problem); round++)
+    for (int round = 0; round < ROUNDS && outcome.isUsable(); round++)
+    {
+        const int before = countFinite(problem.scene().points());
+        if (!fit.isRobust())
+            useWhatTells(problem, withPointsThatStartedBadly(problem), fit);
+        const bool areMore = countFinite(problem.scene().points()) > before;
+        if (!moveToLeastMinima(problem) && !areMore)
+            break;
         outcome = fit.approach();
+    }
     return outcome;
 }
 
@@ -123,13 +169,29 @@ FitOutcome runByPointsOfOneMinimum(Problem& problem, const SceneOutliers& outlie
     const Snapshot before(problem);
     const double variance = varianceOf(problem);
     FitOutcome outcome(FitOutcome::MAX_ITERATIONS);
-    if (decideByPointsOfOneMinimum(problem, outliers, [&]() { fit.run(); }))
+    if (decideByPointsOfOneMinimum(problem, outliers, fit, [&]() { fit.run(); }))
         outcome = run(problem, fit);
     if (!outcome.converged() || !(varianceOf(problem) < variance))
     {
         before.restore(problem);
         outcome.status = FitOutcome::MAX_ITERATIONS;
     }
+    return outcome;
+}
+
+/** With points that tell nothing of the cameras, and without those that may as well be where another minimum is: they would be stated as if
+they were known, and drag cameras along. */
+FitOutcome runWithWhatIsDecided(Problem& problem, const SceneOutliers& outliers, RobustFit& fit, const FitOutcome& outcome)
+{
+    const int telling = countFinite(problem.scene().points());
+    problem.setPoints(startPoints(problem, problem.scene().points()), Masks());
+    const std::vector<Point3d> all = problem.scene().points();
+    problem.setPoints(pointsOfOneMinimum(problem, LEAD), Masks());
+    if (countFinite(pointsThatTell(problem)) == telling)
+        return outcome;
+    if (outliers.checkWhatIsLeft().converged())
+        return run(problem, fit);
+    problem.setPoints(all, Masks());
     return outcome;
 }
 
@@ -199,9 +261,10 @@ double truncatedSquares(const Problem& problem, double variance)
 
 FitOutcome searchBundle(Problem& problem, const SceneOutliers& outliers, RobustFit& fit)
 {
+    useWhatTells(problem, problem.scene().points(), fit);
     const FitOutcome outcome = approachAndRun(problem, outliers, fit);
     const FitOutcome other = outcome.isUsable() ? runByPointsOfOneMinimum(problem, outliers, fit) : outcome;
-    return other.converged() ? other : outcome;
+    return outcome.isUsable() ? runWithWhatIsDecided(problem, outliers, fit, other.converged() ? other : outcome) : outcome;
 }
 
 FitOutcome searchRobustBundle(Problem& problem, const SceneOutliers& outliers, RobustFit& fit, RobustFit& another)
