@@ -33,7 +33,7 @@ FitOutcome adjust(Problem& problem, const BundleTask& task)
     RobustFit fit(problem, outliers, isRobust, problem.pointCount(), criteria), another = fit;
     if (isRobust)
         return searchRobustBundle(problem, outliers, fit, another);
-    return searchBundle(problem, outliers, fit);
+    return searchBundle(problem, outliers, fit, another);
 }
 
 void describe(const Problem& problem, BundleFit& fit)

@@ -11,6 +11,7 @@ whenever the cameras have moved. What is not decided in the end is not told. */
 #include "adjust/ray_midpoints.hpp"
 #include "math/robust_scale.hpp"
 #include "start/multi_start.hpp"
+#include "start/one_distance.hpp"
 #include "window/place.hpp"
 
 namespace cv { namespace refract {
@@ -257,14 +258,34 @@ double truncatedSquares(const Problem& problem, double variance)
     return problem.squaredError()/variance + CUT*CUT*left;
 }
 
-} // namespace
-
-FitOutcome searchBundle(Problem& problem, const SceneOutliers& outliers, RobustFit& fit)
+FitOutcome searchFromStart(Problem& problem, const SceneOutliers& outliers, RobustFit& fit)
 {
     useWhatTells(problem, problem.scene().points(), fit);
     const FitOutcome outcome = approachAndRun(problem, outliers, fit);
     const FitOutcome other = outcome.isUsable() ? runByPointsOfOneMinimum(problem, outliers, fit) : outcome;
     return outcome.isUsable() ? runWithWhatIsDecided(problem, outliers, fit, other.converged() ? other : outcome) : outcome;
+}
+
+} // namespace
+
+FitOutcome searchBundle(Problem& problem, const SceneOutliers& outliers, RobustFit& fit, RobustFit& another)
+{
+    const double MOST = 0.9;            // of the equations: few are easily fitted
+    const bool mayBeElsewhere = problem.scene().lengthCount() > 0 && areRaysParallel(problem);
+    const Snapshot start(problem);
+    const FitOutcome outcome = searchFromStart(problem, outliers, fit);
+    if (!mayBeElsewhere)
+        return outcome;
+    const Snapshot found(problem);
+    const double variance = varianceOf(problem), equations = problem.equationCount();
+    start.restore(problem);
+    FitOutcome other(FitOutcome::MAX_ITERATIONS);
+    if (placeAtOneDistance(problem))
+        other = searchFromStart(problem, outliers, another);
+    if (other.converged() && (!outcome.converged() || (varianceOf(problem) < variance && problem.equationCount() > MOST*equations)))
+        return other;
+    found.restore(problem);
+    return outcome;
 }
 
 FitOutcome searchRobustBundle(Problem& problem, const SceneOutliers& outliers, RobustFit& fit, RobustFit& another)

@@ -1,0 +1,231 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+/* Of a camera that turns and hardly moves, refraction alone tells how far points are: rays of one point differ by little more than what
+poses are off by, and where they come closest is anywhere. Directions are known: points are put on the rays of one view, at the distance D
+at which a length L is seen under its angle, L = D |u_a - u_b|, and the other views follow from them, along a tree. */
+
+#include "start/one_distance.hpp"
+#include "adjust/ray_midpoints.hpp"
+#include "adjust/view_motion.hpp"
+#include "math/robust_scale.hpp"
+#include "pose/poses.hpp"
+#include <map>
+
+namespace cv { namespace refract {
+
+namespace {
+
+const double NaN = std::numeric_limits<double>::quiet_NaN();
+
+//! The rays of an image's points, in the frame of its camera; direction NaN where there is none.
+struct ImageRays
+{
+    std::vector<Vec3d> origin, direction;
+};
+
+ImageRays raysOf(const Camera& camera, const ImagePoints& points)
+{
+    ImageRays all;
+    const Vec3d normal = camera.layers().normal();
+    for (size_t begin = 0; begin < points.pixel.size(); begin += BLOCK)
+    {
+        const int n = (int)std::min((size_t)BLOCK, points.pixel.size() - begin);
+        double u[BLOCK], v[BLOCK];
+        uchar status[BLOCK];
+        Rays rays;
+        for (int k = 0; k < n; k++)
+        {
+            const Point2d& pixel = points.pixel[begin + k];
+            u[k] = pixel.x; v[k] = pixel.y;
+            status[k] = isWhole(pixel) ? REFRACT_OK : REFRACT_NOT_FINITE;
+        }
+        camera.unproject(n, u, v, rays, status);
+        for (int k = 0; k < n; k++)
+        {
+            all.origin.push_back(status[k] == REFRACT_OK ? rays.origin(k, normal) : Vec3d::all(NaN));
+            all.direction.push_back(status[k] == REFRACT_OK ? rays.direction(k) : Vec3d::all(NaN));
+        }
+    }
+    return all;
+}
+
+std::vector<ImageRays> raysOf(const Problem& problem)
+{
+    const Rig rig = problem.rig();
+    std::vector<ImageRays> rays;
+    for (const Image& image : problem.images())
+        rays.push_back(raysOf(rig.cameras[image.camera], image.points));
+    return rays;
+}
+
+//! At which this length is seen under its angle, by each image that shows both of its ends.
+void addDistances(const Problem& problem, const std::vector<ImageRays>& rays, int cluster, const KnownLength& length,
+                  std::vector<double>& distances)
+{
+    std::map<int, Vec3d> toFirst, toSecond;         // by image
+    const std::vector<int>& points = problem.scene().clusters()[cluster].points;
+    for (const Observation& o : problem.observationsOf(cluster))
+    {
+        const int point = problem.images()[o.image].points.index[o.row];
+        if (point == points[length.a])
+            toFirst[o.image] = rays[o.image].direction[o.row];
+        else if (point == points[length.b])
+            toSecond[o.image] = rays[o.image].direction[o.row];
+    }
+    for (const std::pair<const int, Vec3d>& first : toFirst)
+        if (toSecond.count(first.first))
+        {
+            const double distance = length.length/norm(first.second - toSecond[first.first]);
+            if (std::isfinite(distance))
+                distances.push_back(distance);
+        }
+}
+
+/** Lengths that lie askew look shorter, so that they tell more: the nearest tenth is believed. From half of that points find their way
+outwards; from beyond they may not find it back, as there they have no way to go. NaN: no length tells. */
+double distanceOf(const Problem& problem, const std::vector<ImageRays>& rays)
+{
+    std::vector<double> distances;
+    for (int i = 0; i < (int)problem.scene().clusters().size(); i++)
+        for (const KnownLength& length : problem.scene().clusters()[i].lengths)
+            addDistances(problem, rays, i, length, distances);
+    std::sort(distances.begin(), distances.end());
+    return distances.empty() ? NaN : 0.5*distances[distances.size()/10];
+}
+
+//! Points that are placed, or not yet.
+class Placing
+{
+public:
+    explicit Placing(Problem& problem)
+        : problem_(problem), rig_(problem.rig()), rays_(raysOf(problem)), distance_(distanceOf(problem, rays_)*problem.sceneScale()),
+          points_(problem.scene().pointCount(), Vec3d::all(NaN)), poses_(problem.poses()) {}
+    bool isPossible() const { return std::isfinite(distance_); }
+
+    //! On the rays of this view, those that are not yet.
+    void placePointsOf(int view)
+    {
+        for (int i : problem_.imagesOf(view))
+        {
+            const Image& image = problem_.images()[i];
+            const RigidTransform place = transformOf(rig_.extrinsics[image.camera])*transformOf(poses_[view]);
+            for (size_t row = 0; row < image.points.index.size(); row++)
+            {
+                Vec3d& point = points_[image.points.index[row]];
+                if (std::isnan(point[0]) && !std::isnan(rays_[i].direction[row][0]))
+                    point = place.inverse(rays_[i].origin[row] + distance_*rays_[i].direction[row]);
+            }
+        }
+    }
+
+    //! By the image that shows most of the points that are placed.
+    void placeView(int view)
+    {
+        const int ENOUGH = 4;
+        ImagePoints most;
+        int camera = -1;
+        for (int i : problem_.imagesOf(view))
+        {
+            const ImagePoints placed = placedIn(problem_.images()[i]);
+            if (placed.pixel.size() > std::max(most.pixel.size(), (size_t)ENOUGH - 1))
+            {
+                most = placed;
+                camera = problem_.images()[i].camera;
+            }
+        }
+        if (camera < 0)
+            return;
+        Pose pose = poseOf(transformOf(rig_.extrinsics[camera])*transformOf(poses_[view]));
+        pose.found = true;
+        if (!std::isnan(refinePose(rig_.cameras[camera], most, pose)))
+            poses_[view] = inCamera1(pose, rig_.extrinsics[camera]);
+    }
+
+    void finish()
+    {
+        for (int view = 0; view < problem_.viewCount(); view++)
+            if (problem_.isAdjusted(view))
+                problem_.setPose(view, poses_[view]);
+        std::vector<Point3d> points;
+        for (const Vec3d& point : points_)
+            points.push_back(Point3d(point/problem_.sceneScale()));
+        problem_.setPoints(startPoints(problem_, points), std::vector<std::vector<uchar> >());
+    }
+
+private:
+    ImagePoints placedIn(const Image& image) const
+    {
+        ImagePoints placed;
+        for (size_t row = 0; row < image.points.index.size(); row++)
+        {
+            const Vec3d& point = points_[image.points.index[row]];
+            if (std::isnan(point[0]) || !isWhole(image.points.pixel[row]))
+                continue;
+            placed.object.push_back(Point3d(point));
+            placed.pixel.push_back(image.points.pixel[row]);
+            placed.index.push_back(image.points.index[row]);
+        }
+        return placed;
+    }
+
+    Problem& problem_;
+    const Rig rig_;
+    const std::vector<ImageRays> rays_;
+    const double distance_;
+    std::vector<Vec3d> points_;     //!< frame of the scene
+    std::vector<Pose> poses_;
+};
+
+} // namespace
+
+bool areRaysParallel(const Problem& problem)
+{
+    const double PARALLEL = 0.03;       // radians: one to two degrees
+    bool isAnyFree = false;
+    for (int view = 0; view < problem.viewCount(); view++)
+        isAnyFree = isAnyFree || problem.isAdjusted(view);
+    if (!isAnyFree)
+        return false;
+    const Rig rig = problem.rig();
+    const std::vector<ImageRays> rays = raysOf(problem);
+    std::vector<Vec3d> sums(problem.scene().pointCount());
+    std::vector<int> counts(sums.size(), 0);
+    for (size_t i = 0; i < rays.size(); i++)
+    {
+        const Image& image = problem.images()[i];
+        const RigidTransform place = transformOf(rig.extrinsics[image.camera])*transformOf(problem.pose(image.view));
+        for (size_t row = 0; row < image.points.index.size(); row++)
+            if (!std::isnan(rays[i].direction[row][0]))
+            {
+                sums[image.points.index[row]] += place.R.t()*rays[i].direction[row];
+                counts[image.points.index[row]]++;
+            }
+    }
+    std::vector<double> angles;         // RMS about the mean: of n units |sum|^2/n^2 is 1 less their variance
+    for (size_t k = 0; k < sums.size(); k++)
+        if (counts[k] > 1)
+            angles.push_back(std::sqrt(std::max(0., 1 - sums[k].dot(sums[k])/std::pow(counts[k], 2))));
+    return !angles.empty() && median(angles) < PARALLEL;
+}
+
+bool placeAtOneDistance(Problem& problem)
+{
+    Placing placing(problem);
+    if (!placing.isPossible())
+        return false;
+    const ViewGraph graph(problem);
+    for (int view = 0; view < problem.viewCount(); view++)
+        if (graph.isRoot[view])
+            placing.placePointsOf(view);
+    for (const ViewEdge& edge : graph.tree)
+    {
+        placing.placeView(edge.to);
+        placing.placePointsOf(edge.to);
+    }
+    placing.finish();
+    return true;
+}
+
+}} // namespace
