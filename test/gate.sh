@@ -66,7 +66,7 @@ part_sanitizers() {
   sanitize_build
   targets=""
   suite "the module under sanitizers" build/sanitize -L '^refract_tests$' -LE 'slow|real'
-  unset ASAN_OPTIONS OPENCV_FOR_THREADS_NUM
+  unset ASAN_OPTIONS
 }
 part_fuzzers() { run "fuzzing: every parser and every public call, some seconds each" in_the_hour test/fuzz/run.sh; }
 part_slice() {

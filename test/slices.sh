@@ -131,8 +131,7 @@ sanitize_build() {
     -DCMAKE_CXX_FLAGS_DEBUG="-O1 -gline-tables-only" -DREFRACT_SANITIZE=address,undefined -DREFRACT_BUILD_FUZZ=ON \
     -DREFRACT_BUILD_BENCH=OFF -DREFRACT_BUILD_SAMPLES=OFF
   # Ceres and OpenCV keep their thread pools and plugins until the process ends: leaks are not what this looks for.
-  # One thread: the sanitizer's allocator, forked beside other threads (target/limited_search), may stay locked for ever.
-  export ASAN_OPTIONS=detect_leaks=0 OPENCV_FOR_THREADS_NUM=1
+  export ASAN_OPTIONS=detect_leaks=0
 }
 sanitize_tools() {      # sanitize_tools FIRST: of the tools' tests every third
   targets=refract_tools_tests

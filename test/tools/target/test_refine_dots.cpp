@@ -75,6 +75,18 @@ TEST_CASE("Dots of a tilted board are found where their centres are", "[target][
         }
 }
 
+TEST_CASE("A plate of a thousand dots is found", "[target][circles]")
+{
+    const Size size(40, 25);
+    Mat image(25*24 + 40, 40*24 + 40, CV_8U, Scalar(220));
+    for (int i = 0; i < size.area(); i++)
+        circle(image, Point(32 + 24*(i % size.width), 32 + 24*(i/size.width)), 7, Scalar(30), FILLED, LINE_AA);
+    const std::vector<Point2d> found = detectCircleGrid(image, size, false);
+    REQUIRE((int)found.size() == size.area());      // counted from any corner
+    CHECK(std::all_of(found.begin(), found.end(), [](const Point2d& p) {
+        return std::abs(std::remainder(p.x - 32, 24)) < 0.1 && std::abs(std::remainder(p.y - 32, 24)) < 0.1; }));
+}
+
 TEST_CASE("A dot whose surroundings do not do stays where the blob is", "[target][circles]")
 {
     std::vector<DotImage> dots = {{Point2d(50, 50), Matx22d(0.1, 0, 0, 0.1)}, {Point2d(-40, 1e6), Matx22d(0.1, 0, 0, 0.1)}};

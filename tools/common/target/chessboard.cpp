@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "target/chessboard.hpp"
-#include "target/limited_search.hpp"
 #include "target/refine_points.hpp"
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
@@ -122,14 +121,12 @@ bool isChessboard(const std::vector<Point2d>& points, Size size, const Mat& grey
     return isEvenGrid(points, size) && isAlternating(points, size, grey);
 }
 
-std::vector<Point2f> detectByOldChessboard(const Mat& grey, Size size, int seconds)
+/* Not by adaptive thresholds (CALIB_CB_ADAPTIVE_THRESH): where it finds a board it finds it without them, and with them takes every
+speck of noise for a square, for minutes. */
+bool detectByOldChessboard(const Mat& grey, Size size, std::vector<Point2f>& corners)
 {
-    return searchLimited(seconds, size.area(), [&] {
-        std::vector<Point2f> corners;
-        const bool found = findChessboardCorners(grey, size, corners, CALIB_CB_ADAPTIVE_THRESH
-                                                     | CALIB_CB_NORMALIZE_IMAGE | CALIB_CB_FAST_CHECK);
-        return found ? corners : std::vector<Point2f>();
-    });
+    return findChessboardCorners(grey, size, corners, CALIB_CB_NORMALIZE_IMAGE | CALIB_CB_FAST_CHECK)
+        && isChessboard(toDouble(corners), size, grey);
 }
 
 } // namespace
@@ -255,9 +252,8 @@ double contrastOfFirstSquare(const std::vector<Point2d>& points, Size size, cons
 }
 
 /* The sector-based detector is the more tolerant of blur and of boards that are partly cut off; the older one still
-finds some boards among clutter. But it takes half a minute, or several, where there is a board of another size, or a part of one, or one
-curved by a wide-angle lens: so a glance at a small copy of the image goes before it, and its time is limited. */
-std::vector<Point2d> detectChessboard(const Mat& grey, Size size, Size* other, int seconds)
+finds some boards among clutter. It is not tried where a glance tells that there is a board of another size, or a part of one. */
+std::vector<Point2d> detectChessboard(const Mat& grey, Size size, Size* other)
 {
     std::vector<Point2f> corners;
     if (!findChessboardCornersSB(grey, size, corners, CALIB_CB_EXHAUSTIVE)
@@ -274,8 +270,7 @@ std::vector<Point2d> detectChessboard(const Mat& grey, Size size, Size* other, i
             *other = seenSize;
         if (seenSize.width > longerFirst(size).width || seenSize.height > longerFirst(size).height || !mayBeInView(glance, size, grey))
             return {};
-        corners = detectByOldChessboard(grey, size, seconds);
-        if (corners.empty() || !isChessboard(toDouble(corners), size, grey))
+        if (!detectByOldChessboard(grey, size, corners))
             return {};
     }
     if (other)

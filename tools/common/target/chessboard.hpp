@@ -50,9 +50,8 @@ skipped corners, or taken cut squares for whole ones. NaN points are passed over
 bool isEvenGrid(const std::vector<cv::Point2d>& points, cv::Size size);
 
 /** The inner corners of a whole chessboard, known to sub-pixels, row by row from any of its corners; empty if it was not found.
-@param other size of the board (the longer side first) if one of another size is in the image; null: nobody asks
-@param seconds of processor time for the slower of two detectors */
-std::vector<cv::Point2d> detectChessboard(const cv::Mat& grey, cv::Size size, cv::Size* other, int seconds);
+@param other size of the board (the longer side first) if one of another size is in the image; null: nobody asks */
+std::vector<cv::Point2d> detectChessboard(const cv::Mat& grey, cv::Size size, cv::Size* other);
 
 //! Light minus dark, summed over the squares between the corners, as seen from the first one: negative if it is dark.
 double contrastOfFirstSquare(const std::vector<cv::Point2d>& points, cv::Size size, const cv::Mat& grey);

@@ -4,7 +4,6 @@
 #include "target/circle_grid.hpp"
 #include "console/numbers.hpp"
 #include "target/dot_lattice.hpp"
-#include "target/limited_search.hpp"
 #include "target/refine_points.hpp"
 #include <opencv2/calib3d.hpp>
 #include <opencv2/features2d.hpp>
@@ -46,6 +45,7 @@ std::vector<Point2f> findDots(const Mat& grey, Size size, bool asymmetric)
     SimpleBlobDetector::Params limits;
     limits.maxArea = std::max(limits.maxArea, (float)(grey.total()/size.area()));
     const int flags = asymmetric ? CALIB_CB_ASYMMETRIC_GRID : CALIB_CB_SYMMETRIC_GRID;
+    const auto isInTime = [](size_t blobs, size_t most) { return blobs > 0 && blobs <= most; };     // it grows with the cube of the number
     for (const uchar colour : {0, 255})
     {
         limits.blobColor = colour;
@@ -53,9 +53,10 @@ std::vector<Point2f> findDots(const Mat& grey, Size size, bool asymmetric)
         std::vector<KeyPoint> blobs;
         SimpleBlobDetector::create(limits)->detect(grey, blobs);
         KeyPoint::convert(blobs, centres);
-        if (!findCirclesGrid(centres, size, found, flags, nullptr))
+        if (!isInTime(blobs.size(), 500) || !findCirclesGrid(centres, size, found, flags, nullptr))
             found = gridOfBlobs(blobs, size, asymmetric);
-        if (found.empty() && !findCirclesGrid(centres, size, found, flags | CALIB_CB_CLUSTERING, nullptr))
+        if (found.empty() && (!isInTime(blobs.size(), 2000)
+                              || !findCirclesGrid(centres, size, found, flags | CALIB_CB_CLUSTERING, nullptr)))
             continue;
         const std::vector<Point2f> diameters = diametersAt(found, blobs);
         found.insert(found.end(), diameters.begin(), diameters.end());
@@ -233,9 +234,9 @@ std::vector<Vec2d> gridOf(Size size, bool asymmetric)
     return grid;
 }
 
-std::vector<Point2d> detectCircleGrid(const Mat& grey, Size size, bool asymmetric, int seconds)
+std::vector<Point2d> detectCircleGrid(const Mat& grey, Size size, bool asymmetric)
 {
-    const std::vector<Point2f> found = searchLimited(seconds, 2*size.area(), [&] { return findDots(grey, size, asymmetric); });
+    const std::vector<Point2f> found = findDots(grey, size, asymmetric);
     const std::vector<Vec2d> grid = gridOf(size, asymmetric);
     std::vector<Point2d> blobs;
     std::vector<double> areas;

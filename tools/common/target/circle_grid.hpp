@@ -13,9 +13,8 @@ namespace tools {
 std::vector<cv::Vec2d> gridOf(cv::Size size, bool asymmetric);
 
 /** The images of the centres of dots, dark on light ground or the reverse, NaN where one is missing (up to a quarter of
-them); empty if the grid was not found. Some dots may be larger than the others.
-@param seconds of processor time, as the detector may take minutes for nothing */
-std::vector<cv::Point2d> detectCircleGrid(const cv::Mat& grey, cv::Size size, bool asymmetric, int seconds = 20);
+them); empty if the grid was not found. Some dots may be larger than the others. */
+std::vector<cv::Point2d> detectCircleGrid(const cv::Mat& grey, cv::Size size, bool asymmetric);
 
 } // namespace tools
 

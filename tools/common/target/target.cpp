@@ -164,11 +164,8 @@ std::vector<std::pair<int, int>> Target::neighbours() const
     return pairs;
 }
 
-std::vector<Point2d> Target::detect(const Mat& grey, Size* other, Effort effort) const
+std::vector<Point2d> Target::detect(const Mat& grey, Size* other) const
 {
-    const int hurried = 2 + (int)(grey.total()/1000000);        // so that a large image is not given up for its size
-    const int secondsOfChessboard = effort == HURRIED ? std::min(hurried, 5) : 5;
-    const int secondsOfDots = effort == HURRIED ? std::min(hurried, 20) : 20;
     if (pattern_ == CHARUCO)
         return detectCharuco(grey, size_, square_, marker_, dictionary_, legacy_);
     if (pattern_ == APRILGRID)
@@ -177,8 +174,8 @@ std::vector<Point2d> Target::detect(const Mat& grey, Size* other, Effort effort)
         return detectListedDots(grey, objectPoints_);
     if (partial_)
         return detectPartialChessboard(grey, size_);
-    const std::vector<Point2d> points = pattern_ == CHESSBOARD ? detectChessboard(grey, size_, other, secondsOfChessboard)
-        : detectCircleGrid(grey, size_, pattern_ == ACIRCLES, secondsOfDots);
+    const std::vector<Point2d> points = pattern_ == CHESSBOARD ? detectChessboard(grey, size_, other)
+        : detectCircleGrid(grey, size_, pattern_ == ACIRCLES);
     return points.empty() ? points : canonical(points, grey);
 }
 
@@ -186,7 +183,7 @@ bool Target::glimpse(const Mat& grey) const
 {
     if (partial_)
         return !lookForChessboard(grey).size.empty();
-    return pattern_ == CHESSBOARD ? glimpseChessboard(grey, size_) : !detect(grey, nullptr, HURRIED).empty();
+    return pattern_ == CHESSBOARD ? glimpseChessboard(grey, size_) : !detect(grey).empty();
 }
 
 std::vector<std::vector<int>> Target::symmetries() const

@@ -72,13 +72,10 @@ public:
     //! Pairs of points next to each other in a row or column, of DOTS none; objectPoints() tells how far apart they are.
     std::vector<std::pair<int, int>> neighbours() const;
 
-    //! How long detectors which may take minutes for nothing go on.
-    enum Effort { HURRIED, THOROUGH };
-
     /** Pixels of the points in an 8-bit grey image, NaN where one was not seen; empty if the target was not found, which is
     known after some seconds in any image.
     @param other a chessboard's size, if it was not found but one of another size is in the image (the longer side first) */
-    std::vector<cv::Point2d> detect(const cv::Mat& grey, cv::Size* other = nullptr, Effort effort = THOROUGH) const;
+    std::vector<cv::Point2d> detect(const cv::Mat& grey, cv::Size* other = nullptr) const;
 
     //! Whether it is worth while to look for the target: a fast detector finds it, of a chessboard in a small copy of the image.
     bool glimpse(const cv::Mat& grey) const;

@@ -58,7 +58,7 @@ bool isFound(const Target& target, const std::vector<Without>& images, Channel c
     const size_t count = std::min(images.size(), TRIED);
     std::vector<char> found(count);
     inParallel((int)count, [&](int i) {
-        found[i] = !target.detect(readGrey(images[i].path, channel), nullptr, Target::HURRIED).empty(); });
+        found[i] = !target.detect(readGrey(images[i].path, channel)).empty(); });
     return std::count(found.begin(), found.end(), true) > 0;
 }
 
@@ -176,12 +176,11 @@ std::vector<int> part(const std::vector<int>& all, size_t from, size_t to)
 
 } // namespace
 
-std::vector<cv::Point2d> detectIn(const cv::Mat& grey, const std::string& path, const Target& target, cv::Size* other,
-                                  Target::Effort effort)
+std::vector<cv::Point2d> detectIn(const cv::Mat& grey, const std::string& path, const Target& target, cv::Size* other)
 {
     try
     {
-        return target.detect(grey, other, effort);
+        return target.detect(grey, other);
     }
     catch (const Failure& e)
     {
@@ -249,7 +248,7 @@ std::string otherTargetText(const std::string& where, const Target& target, cv::
 TargetSearch::TargetSearch(const std::string& source, const std::vector<std::string>& paths, const Target& target, Channel channel)
     : source_(source), paths_(paths), target_(target), channel_(channel), results_(paths.size()) {}
 
-void TargetSearch::search(const std::vector<int>& which, Target::Effort effort, Progress& progress)
+void TargetSearch::search(const std::vector<int>& which, Progress& progress)
 {
     // What else may be in an image is asked for only where nothing is found in any.
     const bool isSizeKnown = std::any_of(results_.begin(), results_.end(), [](const Result& result) { return !result.points.empty(); });
@@ -257,10 +256,9 @@ void TargetSearch::search(const std::vector<int>& which, Target::Effort effort, 
         const int i = which[k];
         progress.at(paths_[i]);
         Result& result = results_[i];
-        result.points = detectIn(readGrey(paths_[i], channel_), paths_[i], target_, isSizeKnown ? nullptr : &result.other, effort);
-        result.done = effort == Target::THOROUGH || !result.points.empty();
-        if (result.done)
-            progress.step();
+        result.points = detectIn(readGrey(paths_[i], channel_), paths_[i], target_, isSizeKnown ? nullptr : &result.other);
+        result.done = true;
+        progress.step();
     });
 }
 
@@ -300,7 +298,7 @@ void TargetSearch::refuse(const std::vector<int>& which) const
 void TargetSearch::begin(Progress& progress)
 {
     const std::vector<int> order = spread((int)paths_.size()), first = part(order, 0, FIRST);
-    search(first, Target::HURRIED, progress);
+    search(first, progress);
     const auto isFound = [this](int i) { return !results_[i].points.empty(); };
     if (first.empty() || std::any_of(first.begin(), first.end(), isFound))
         return;
@@ -309,31 +307,21 @@ void TargetSearch::begin(Progress& progress)
         images.push_back({paths_[i], results_[i].other});
     if (first.size() > 1 && !otherChessboard(images).empty())
         refuse(first);
-    if (paths_.size() <= FIRST)         // all of them: no other images are worth a search before these are
-    {
-        searchThoroughly(progress);
-        if (std::none_of(first.begin(), first.end(), isFound))
-            refuse(first);
-        return;
-    }
+    if (paths_.size() <= FIRST)
+        refuse(first);
     if (glimpse(part(order, FIRST, GLANCES), progress))
         return;
     lookForOthers(part(order, FIRST, EXPLAINING));
     refuse(part(order, 0, EXPLAINING));
 }
 
-void TargetSearch::searchThoroughly(Progress& progress)
+std::vector<std::vector<cv::Point2d>> TargetSearch::finish(Progress& progress)
 {
     std::vector<int> left;
     for (size_t i = 0; i < paths_.size(); i++)
         if (!results_[i].done)
             left.push_back((int)i);
-    search(left, Target::THOROUGH, progress);
-}
-
-std::vector<std::vector<cv::Point2d>> TargetSearch::finish(Progress& progress)
-{
-    searchThoroughly(progress);
+    search(left, progress);
     std::vector<std::vector<cv::Point2d>> points;
     bool any = false;
     for (const Result& result : results_)

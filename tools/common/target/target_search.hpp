@@ -20,8 +20,7 @@ struct Without
 };
 
 //! As Target::detect(); a Failure names the image.
-std::vector<cv::Point2d> detectIn(const cv::Mat& grey, const std::string& path, const Target& target, cv::Size* other = nullptr,
-                                  Target::Effort effort = Target::THOROUGH);
+std::vector<cv::Point2d> detectIn(const cv::Mat& grey, const std::string& path, const Target& target, cv::Size* other = nullptr);
 
 //! The size of the chessboard that all these images show in place of the one that was asked for; empty if they do not agree.
 cv::Size otherChessboard(const std::vector<Without>& images);
@@ -58,9 +57,7 @@ private:
         bool done = false;
     };
 
-    void search(const std::vector<int>& which, Target::Effort effort, Progress& progress);
-    //! What a hurried search has not found.
-    void searchThoroughly(Progress& progress);
+    void search(const std::vector<int>& which, Progress& progress);
     //! Whether one of these is worth while to be searched.
     bool glimpse(const std::vector<int>& which, Progress& progress);
     void lookForOthers(const std::vector<int>& which);
