@@ -16,7 +16,6 @@ namespace {
 
 const int LEAST = 3;                // rows and columns of a piece that is worth keeping
 const int SIDE_OF_COPY = 1000;      // pixels: enough to see what is there
-const double FAINT = 0.75;          // of the contrast about a corner: about those of the outermost squares it is half
 const double ABRUPT = 1.6;          // ratio of two steps in a row; a board near and steep to the camera reaches 1.3
 
 //! x right, y down, seen from the front: the same handedness as the object points.
@@ -54,33 +53,30 @@ bool isEvenStep(const Point2d& a, const Point2d& b, const Point2d& c)
     return !(std::max(first, second) > ABRUPT*std::min(first, second));   // true with a NaN
 }
 
-/** How much brighter one diagonal's two squares are than the other's about each of these corners of a grid, on average; the other way round
-about every second corner. NaN: the squares are out of the image.
-@param H grid to image */
-double alternation(const Mat& grey, const Mat& H, const Rect& corners)
+/** False if the steps along some row or column change more abruptly than perspective can make them: the detector has
+skipped corners, or taken cut squares for whole ones. NaN points are passed over. */
+bool isEvenGrid(const std::vector<Point2d>& points, Size size)
 {
-    const Rect2d inside(1, 1, grey.cols - 2, grey.rows - 2);
-    double sum = 0;
-    int count = 0;
-    for (int row = corners.y; row < corners.br().y; row++)
-        for (int column = corners.x; column < corners.br().x; column++)
-        {
-            const Point2f at((float)column, (float)row);
-            std::vector<Point2f> centres;
-            perspectiveTransform(std::vector<Point2f>{at + Point2f(-0.5f, -0.5f), at + Point2f(0.5f, 0.5f), at + Point2f(-0.5f, 0.5f),
-                                                      at + Point2f(0.5f, -0.5f)}, centres, H);
-            if (!std::all_of(centres.begin(), centres.end(), [&](const Point2f& p) { return inside.contains(Point2d(p)); }))
-                continue;
-            for (int k = 0; k < 4; k++)
-                sum += (((row + column) % 2 != 0) == (k < 2) ? -1 : 1)*brightnessAt(grey, centres[k]);
-            count++;
-        }
-    return sum/count;
+    const auto at = [&](int row, int column) { return points[row*size.width + column]; };
+    for (int row = 0; row < size.height; row++)
+        for (int column = 0; column < size.width; column++)
+            if ((column > 1 && !isEvenStep(at(row, column - 2), at(row, column - 1), at(row, column))) ||
+                (row > 1 && !isEvenStep(at(row - 2, column), at(row - 1, column), at(row, column))))
+                return false;
+    return true;
 }
 
 std::vector<Point2d> toDouble(const std::vector<Point2f>& points)
 {
     return std::vector<Point2d>(points.begin(), points.end());
+}
+
+//! Of a few pixels about one.
+double brightnessAt(const Mat& grey, const Point2f& pixel)
+{
+    Mat patch;
+    getRectSubPix(grey, Size(3, 3), pixel, patch);
+    return mean(patch)[0];
 }
 
 //! Brightness in the middle of each square between the corners.
@@ -131,13 +127,6 @@ bool detectByOldChessboard(const Mat& grey, Size size, std::vector<Point2f>& cor
 
 } // namespace
 
-double brightnessAt(const Mat& grey, const Point2f& pixel)
-{
-    Mat patch;
-    getRectSubPix(grey, Size(3, 3), pixel, patch);
-    return mean(patch)[0];
-}
-
 std::vector<Point2d> detectPartialChessboard(const Mat& grey, Size size)
 {
     const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -168,77 +157,20 @@ bool glimpseChessboard(const Mat& grey, Size size)
     return findChessboardCornersSB(smallCopy(grey), size, corners);
 }
 
-SeenChessboard lookForChessboard(const Mat& grey, const std::function<bool(const SeenChessboard&)>& isEnough)
+Size lookForChessboard(const Mat& grey)
 {
-    const int leastCorners = 12, most = LEAST + 2;
+    const int leastCorners = 12;
     const Mat copy = smallCopy(grey);
-    SeenChessboard largest;
-    for (int k = LEAST; k <= most; k++)         // none of them finds every board; the smallest finds most pieces
+    Size largest;
+    for (int start = LEAST + 2; start >= LEAST; start--)        // none of them finds every board
     {
-        const int start = isEnough ? k : LEAST + most - k;
         Mat meta;
         std::vector<Point2f> corners;
-        if (!findChessboardCornersSB(copy, Size(start, start), corners, CALIB_CB_EXHAUSTIVE | CALIB_CB_LARGER, meta)
-            || meta.size().area() < std::max(leastCorners, largest.size.area() + 1)
-            || !isEvenGrid(std::vector<Point2d>(corners.begin(), corners.end()), meta.size()))
-            continue;
-        for (Point2f& corner : corners)
-            corner *= (float)grey.cols/(float)copy.cols;
-        largest = {meta.size(), corners};
-        if (isEnough && isEnough(largest))
-            break;
+        if (findChessboardCornersSB(copy, Size(start, start), corners, CALIB_CB_EXHAUSTIVE | CALIB_CB_LARGER, meta)
+            && meta.size().area() >= std::max(leastCorners, largest.area() + 1) && isEvenGrid(toDouble(corners), meta.size()))
+            largest = longerFirst(meta.size());
     }
     return largest;
-}
-
-bool mayBeInView(const SeenChessboard& piece, Size size, const Mat& grey)
-{
-    const int TELLING = 4;              // a smaller part of a board is seen in many things
-    const double BENT = 0.05;           // of the image, by which a lens bends as many rows or columns again
-    if (TELLING*piece.size.area() < size.area())
-        return true;
-    std::vector<Point2f> grid;
-    for (int row = 0; row < piece.size.height; row++)
-        for (int column = 0; column < piece.size.width; column++)
-            grid.emplace_back((float)column, (float)row);
-    const Mat H = findHomography(grid, piece.corners);
-    if (H.empty())
-        return true;
-    const double usual = alternation(grey, H, Rect(Point(), piece.size));
-    const auto goesOn = [&](const Rect& corners) { return !(alternation(grey, H, corners)/usual < FAINT); };    // true with a NaN
-    const int columns = piece.size.width, rows = piece.size.height;
-    const bool left = goesOn({-1, 0, 1, rows}), right = goesOn({columns, 0, 1, rows});
-    const bool up = goesOn({0, -1, columns, 1}), down = goesOn({0, rows, columns, 1});
-    for (const Size board : {size, Size(size.height, size.width)})
-    {
-        const double again = std::max((double)(board.width - columns)/columns, (double)(board.height - rows)/rows);
-        const Point2d room = again*Point2d(BENT*grey.cols, BENT*grey.rows);
-        const Rect2d within(-room, Point2d(grey.cols, grey.rows) + room);
-        for (int before = 0; before <= board.width - columns; before++)
-            for (int above = 0; above <= board.height - rows; above++)
-            {
-                if ((before > 0 && !left) || (before < board.width - columns && !right) || (above > 0 && !up)
-                    || (above < board.height - rows && !down))
-                    continue;
-                const Point2f first((float)-before, (float)-above), last = first + Point2f((float)board.width - 1, (float)board.height - 1);
-                std::vector<Point2f> corners;
-                perspectiveTransform(std::vector<Point2f>{first, {last.x, first.y}, last, {first.x, last.y}}, corners, H);
-                if (std::all_of(corners.begin(), corners.end(), [&](const Point2f& p) { return within.contains(Point2d(p)); }))
-                    return true;
-            }
-    }
-    return false;
-}
-
-bool isEvenGrid(const std::vector<Point2d>& points, Size size)
-{
-    const auto at = [&](int row, int column) { return points[row*size.width + column]; };
-    for (int row = 0; row < size.height; row++)
-        for (int column = 0; column < size.width; column++)
-            if ((column > 1 && !isEvenStep(at(row, column - 2), at(row, column - 1), at(row, column))) ||
-                (row > 1 && !isEvenStep(at(row - 2, column), at(row - 1, column), at(row, column))))
-                return false;
-    return true;
 }
 
 double contrastOfFirstSquare(const std::vector<Point2d>& points, Size size, const Mat& grey)
@@ -252,25 +184,17 @@ double contrastOfFirstSquare(const std::vector<Point2d>& points, Size size, cons
 }
 
 /* The sector-based detector is the more tolerant of blur and of boards that are partly cut off; the older one still
-finds some boards among clutter. It is not tried where a glance tells that there is a board of another size, or a part of one. */
+finds some boards among clutter, and parts of larger ones. */
 std::vector<Point2d> detectChessboard(const Mat& grey, Size size, Size* other)
 {
     std::vector<Point2f> corners;
     if (!findChessboardCornersSB(grey, size, corners, CALIB_CB_EXHAUSTIVE)
         || !isChessboard(toDouble(corners), size, grey))
     {
-        if (!other && !checkChessboard(grey, size))         // nor would the older one find any
-            return {};
-        const auto isCutOff = [&](const SeenChessboard& seen) {
-            return !mayBeInView(seen, size, grey)
-                && isAlternating(std::vector<Point2d>(seen.corners.begin(), seen.corners.end()), seen.size, grey); };
-        const SeenChessboard glance = other ? lookForChessboard(grey) : lookForChessboard(grey, isCutOff);
-        const Size seenSize = longerFirst(glance.size) != longerFirst(size) ? longerFirst(glance.size) : Size();
+        const Size whole = longerFirst(size), seen = other ? lookForChessboard(grey) : Size();
         if (other)
-            *other = seenSize;
-        if (seenSize.width > longerFirst(size).width || seenSize.height > longerFirst(size).height || !mayBeInView(glance, size, grey))
-            return {};
-        if (!detectByOldChessboard(grey, size, corners))
+            *other = seen != whole ? seen : Size();
+        if (seen.width > whole.width || seen.height > whole.height || !detectByOldChessboard(grey, size, corners))
             return {};
     }
     if (other)

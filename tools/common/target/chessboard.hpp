@@ -6,16 +6,12 @@
 
 #include <opencv2/core.hpp>
 #include <algorithm>
-#include <functional>
 #include <vector>
 
 namespace tools {
 
 //! The longer side first.
 inline cv::Size longerFirst(cv::Size size) { return cv::Size(std::max(size.width, size.height), std::min(size.width, size.height)); }
-
-//! Of a few pixels about one.
-double brightnessAt(const cv::Mat& grey, const cv::Point2f& pixel);
 
 /** A piece of a chessboard that is partly out of view, hidden or cut.
 
@@ -29,25 +25,9 @@ std::vector<cv::Point2d> detectPartialChessboard(const cv::Mat& grey, cv::Size s
 //! Whether a chessboard of that size is seen in a small copy of the image.
 bool glimpseChessboard(const cv::Mat& grey, cv::Size size);
 
-//! Inner corners that were seen, row by row; none: of size 0.
-struct SeenChessboard
-{
-    cv::Size size;
-    std::vector<cv::Point2f> corners;       //!< pixels of the image
-};
-
-/** The largest chessboard that is seen in a small copy of the image, whatever it is.
-@param isEnough of one that is seen: no larger one is looked for */
-SeenChessboard lookForChessboard(const cv::Mat& grey, const std::function<bool(const SeenChessboard&)>& isEnough = nullptr);
-
-/** False if a piece of the board was seen, and wherever on the board that piece may be, a part of the board is out of the image, or no
-squares are where the next ones of the board would be.
-@param size of the whole board */
-bool mayBeInView(const SeenChessboard& piece, cv::Size size, const cv::Mat& grey);
-
-/** False if the steps along some row or column change more abruptly than perspective can make them: the detector has
-skipped corners, or taken cut squares for whole ones. NaN points are passed over. */
-bool isEvenGrid(const std::vector<cv::Point2d>& points, cv::Size size);
+/** The size of the largest chessboard that is seen in a small copy of the image, whatever it is, in inner corners, the longer side first;
+empty: none is. */
+cv::Size lookForChessboard(const cv::Mat& grey);
 
 /** The inner corners of a whole chessboard, known to sub-pixels, row by row from any of its corners; empty if it was not found.
 @param other size of the board (the longer side first) if one of another size is in the image; null: nobody asks */

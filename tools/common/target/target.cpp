@@ -182,7 +182,7 @@ std::vector<Point2d> Target::detect(const Mat& grey, Size* other) const
 bool Target::glimpse(const Mat& grey) const
 {
     if (partial_)
-        return !lookForChessboard(grey).size.empty();
+        return !lookForChessboard(grey).empty();
     return pattern_ == CHESSBOARD ? glimpseChessboard(grey, size_) : !detect(grey).empty();
 }
 

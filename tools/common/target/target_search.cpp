@@ -125,7 +125,7 @@ cv::Size chessboardIn(const std::vector<Without>& images, Channel channel)
 {
     std::vector<Without> seen(images.begin(), images.begin() + (long)std::min(images.size(), TRIED));
     for (Without& image : seen)
-        image.chessboard = longerFirst(lookForChessboard(readGrey(image.path, channel)).size);
+        image.chessboard = lookForChessboard(readGrey(image.path, channel));
     return seen.size() > 1 ? usualSize(seen) : seen[0].chessboard;
 }
 
@@ -280,9 +280,9 @@ void TargetSearch::lookForOthers(const std::vector<int>& which)
         return;
     inParallel((int)which.size(), [&](int k) {
         const int i = which[k];
-        const cv::Size seen = lookForChessboard(readGrey(paths_[i], channel_)).size, whole = target_.size();
-        if (seen != whole && seen != cv::Size(whole.height, whole.width))
-            results_[i].other = longerFirst(seen);
+        const cv::Size seen = lookForChessboard(readGrey(paths_[i], channel_));
+        if (seen != longerFirst(target_.size()))
+            results_[i].other = seen;
     });
 }
 
