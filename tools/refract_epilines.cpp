@@ -1,7 +1,7 @@
 // This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
 // SPDX-License-Identifier: Apache-2.0
 
-#include "assess/rig_check.hpp"
+#include "assess/measured_causes.hpp"
 #include "measure/consistency.hpp"
 #include "calibrate/rig_model.hpp"
 #include "console/cli.hpp"

@@ -1,7 +1,7 @@
 // This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
 // SPDX-License-Identifier: Apache-2.0
 
-#include "assess/rig_check.hpp"
+#include "assess/measured_causes.hpp"
 #include "console/cli.hpp"
 #include "console/csv.hpp"
 #include "console/file_output.hpp"
@@ -10,6 +10,7 @@
 #include "match/depth_range.hpp"
 #include "match/features.hpp"
 #include "match/scene_matches.hpp"
+#include "measure/view_observations.hpp"
 #include "report/drawing.hpp"
 
 #include <iostream>

@@ -4,6 +4,7 @@
 /* Is a stated +- true, in every flow of refract_calib? RMS error over RMS stated, over many trials, of points, normal,
 distance, lens, R and T. The long form is hidden: run with [.honesty]. */
 #include "measure/eigen_matrix.hpp"
+#include "measure/joint_error.hpp"
 #include "measure/point_error.hpp"
 #include "measure/measurement.hpp"
 #include "assess/cross_validation.hpp"

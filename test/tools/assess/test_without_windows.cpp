@@ -3,6 +3,7 @@
 
 // Images that are given as through a window, though it was out: of boards and of scenes, and never said of right ones.
 #include "assess/check_problem.hpp"
+#include "assess/measured_causes.hpp"
 #include "assess/rig_check.hpp"
 #include "match/drawn_matches.hpp"
 #include "match/match_scene.hpp"

@@ -5,6 +5,7 @@
 #define REFRACT_TOOLS_GUM_TABLE_HPP
 
 #include "accept/test_points.hpp"
+#include "measure/joint_error.hpp"
 
 /* The uncertainty budget of one quantity y as the GUM writes it (JCGM 100:2008, 5.1 and annex G, EA-4/02): rows of independent
 sources i with the standard uncertainty u(x_i), the sensitivity c_i = dy/dx_i and the contribution c_i u(x_i), whose squares add up

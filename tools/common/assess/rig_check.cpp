@@ -345,37 +345,6 @@ std::string causesIn(const CheckResult& result)
     return text + alternatives(sentences, MOST);
 }
 
-std::string causesOf(const Calibration& calibration, const std::vector<View>& views, double pixelSigma)
-{
-    const size_t MOST = 6;
-    const double FALSE_ALARM = 1e-4;
-    std::vector<View> some;
-    for (size_t i = 0; i < std::min(MOST, views.size()); i++)
-        some.push_back(views[i*views.size()/std::min(MOST, views.size())]);
-    try
-    {
-        return causesIn(checkRig(checkInputOf(calibration, "", pixelSigma), some, FALSE_ALARM, calibration.unit));
-    }
-    catch (const Failure&)          // no pose, no noise
-    {
-        return "";
-    }
-}
-
-std::string mixupIn(const Calibration& calibration, const ViewObservations& scene, double sigma)
-{
-    const double FALSE_ALARM = 1e-4;
-    try
-    {
-        const CheckResult result = checkScene(checkInputOf(calibration, "", sigma), scene, FALSE_ALARM, calibration.unit);
-        return result.isMixup && result.explained ? causesIn(result) : "";
-    }
-    catch (const Failure&)          // too few points
-    {
-        return "";
-    }
-}
-
 static double powerOf(double degrees, double variance, int parameters, const CheckResult& result)
 {
     return upperTailNoncentralF(parameters, result.dof, degrees*degrees/variance, quantileF(parameters, result.dof, result.critical));

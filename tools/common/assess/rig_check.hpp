@@ -82,14 +82,6 @@ CheckResult checkScene(const CheckInput& input, const ViewObservations& scene, d
 //! "a; or b", the best three.
 std::string causesIn(const CheckResult& result);
 
-/** Why measured views contradict the calibration, as causesIn says it; empty if they do not, or if nothing tells. A few of the views are
-taken. @param pixelSigma of a pixel coordinate */
-std::string causesOf(const Calibration& calibration, const std::vector<View>& views, double pixelSigma);
-
-/** The same of points of a scene, as far as images are not what they are given for, which no rig that is set free tells: its points follow
-it. @param sigma of a usual pixel coordinate */
-std::string mixupIn(const Calibration& calibration, const ViewObservations& scene, double sigma);
-
 /** Probability that a tilt of this size, in the direction in which it shows least, is found.
 @param share of the covariance: 1/2 for twice as many images */
 double powerOf(const WindowCheck& window, const CheckResult& result, double tiltDeg, double share = 1.);

@@ -5,7 +5,7 @@
 #define REFRACT_TOOLS_BOARD_LINE_HPP
 
 #include "laser/ridges.hpp"
-#include "measure/measurement.hpp"
+#include "measure/target_pose.hpp"
 #include "target/target.hpp"
 
 /* A laser line on a flat board whose pose is known: on the board it is straight. Edges of the board's pattern, which are bright lines too

@@ -8,8 +8,8 @@
 #include "console/file_output.hpp"
 #include "math/dense.hpp"
 #include "measure/eigen_matrix.hpp"
-#include "measure/measurement.hpp"
 #include "measure/rig_vector.hpp"
+#include "measure/target_pose.hpp"
 #include <opencv2/core/persistence.hpp>
 #include <cmath>
 #include <limits>

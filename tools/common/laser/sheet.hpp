@@ -5,9 +5,8 @@
 #define REFRACT_TOOLS_SHEET_HPP
 
 #include "calibrate/calib_file.hpp"
-#include "laser/emitter.hpp"
+#include "laser/emitter_prior.hpp"
 #include "laser/ridges.hpp"
-#include "measure/eigen_matrix.hpp"
 #include "measure/measurement.hpp"
 #include <memory>
 

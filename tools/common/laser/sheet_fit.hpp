@@ -5,7 +5,6 @@
 #define REFRACT_TOOLS_SHEET_FIT_HPP
 
 #include "laser/board_line.hpp"
-#include "laser/emitter.hpp"
 #include "laser/sheet.hpp"
 
 /* The sheet of light from lines on boards. Which of each board's candidates is the line, the sheet decides on which most boards agree.

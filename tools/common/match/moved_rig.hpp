@@ -4,7 +4,7 @@
 #ifndef REFRACT_TOOLS_MOVED_RIG_HPP
 #define REFRACT_TOOLS_MOVED_RIG_HPP
 
-#include "assess/check_problem.hpp"
+#include "assess/check_input.hpp"
 #include "match/match_noise.hpp"
 
 /* What may have become of a rig since its calibration, and how far from their curves matches then are. */

@@ -11,6 +11,7 @@
 #include "match/pair_mistakes.hpp"
 #include "match/partner_search.hpp"
 #include "measure/measurement.hpp"
+#include "measure/view_observations.hpp"
 #include <algorithm>
 #include <cmath>
 

@@ -4,17 +4,18 @@
 #ifndef REFRACT_TOOLS_SCENE_MATCHES_HPP
 #define REFRACT_TOOLS_SCENE_MATCHES_HPP
 
-#include "assess/check_problem.hpp"
+#include "assess/check_input.hpp"
 #include "bundle/matches.hpp"
 #include "calibrate/rig_model.hpp"
 #include "console/failure.hpp"
 #include "console/frames.hpp"
 #include "match/match_noise.hpp"
 #include "match/partner_search.hpp"
-#include "measure/view_observations.hpp"
 
 /* From images of a scene to matches for refract_bundle and refract_check. */
 namespace tools {
+
+struct ViewObservations;
 
 /** What each camera of a calibration took. Throws Failure if there are not as many as cameras, or one alone. @param filename of the
 calibration, for the text */

@@ -6,7 +6,7 @@
 #include "calibrate/units.hpp"
 #include "console/table.hpp"
 #include "math/dense.hpp"
-#include "measure/point_error.hpp"
+#include "measure/joint_error.hpp"
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -4,11 +4,9 @@
 #include "measure/measurement.hpp"
 #include "calibrate/rig_data.hpp"
 #include "calibrate/rig_model.hpp"
-#include "console/failure.hpp"
 #include "math/dense.hpp"
-#include "measure/eigen_matrix.hpp"
 #include "measure/rig_vector.hpp"
-#include <opencv2/calib3d.hpp>
+#include "measure/target_pose.hpp"
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -16,58 +14,6 @@
 using namespace cv;
 
 namespace tools {
-
-Matx33d TargetPose::rotation() const
-{
-    Matx33d R;
-    Rodrigues(rvec, R);
-    return R;
-}
-
-MatrixXd TargetPose::differentiatePoint(const Point3d& objectPoint) const
-{
-    Matx33d R;
-    Mat jacobian;                               // 3x9: by rvec, of R row by row
-    Rodrigues(rvec, R, jacobian);
-    const MatrixXd dR = toEigen(jacobian);
-    MatrixXd byPose(3, 6);
-    byPose.rightCols(3).setIdentity();
-    for (int row = 0; row < 3; row++)
-        byPose.block(row, 0, 1, 3) = (dR.middleCols(3*row, 3)*Eigen::Vector3d(objectPoint.x, objectPoint.y, objectPoint.z)).transpose();
-    return byPose;
-}
-
-TargetPose poseOfTarget(const Calibration& calibration, const std::vector<Point3d>& objectPoints, const std::vector<Point2d>& pixels)
-{
-    const auto& camera = calibration.cameras[0].camera;
-    TargetPose pose;
-    if (!refract::refractiveSolvePnP(objectPoints, pixels, camera, pose.rvec, pose.tvec))
-        throw Failure("no pose of the target explains its points: check --size and --square");
-    std::vector<Point3d> seenPoints;
-    std::vector<Point2d> seenPixels, predicted;
-    for (size_t i = 0; i < pixels.size(); i++)
-        if (seen(pixels[i]))
-        {
-            seenPoints.push_back(objectPoints[i]);
-            seenPixels.push_back(pixels[i]);
-        }
-    refract::refractiveProjectPoints(seenPoints, pose.rvec, pose.tvec, camera, predicted);
-    double squares = 0;
-    for (size_t i = 0; i < seenPixels.size(); i++)
-        squares += std::pow(norm(seenPixels[i] - predicted[i]), 2);
-    pose.residual = std::sqrt(squares/std::max(1., 2.*seenPixels.size() - 6));
-    const PointDerivatives d = differentiatePoints(camera, seenPoints, pose.rvec, pose.tvec);
-    pose.byNoise = refract::inverse(refract::transposeTimes(d.byPose, d.byPose));
-    pose.byParameters = -refract::product(refract::timesTranspose(pose.byNoise, d.byPose), d.byParameters);
-    return pose;
-}
-
-MatrixXd covarianceOfCamera1(const Calibration& calibration, Eigen::Index parameters)
-{
-    if (calibration.covariance.empty())
-        return MatrixXd::Zero(parameters, parameters);
-    return toEigen(calibration.covariance).topLeftCorner(parameters, parameters);
-}
 
 namespace {
 

@@ -4,6 +4,7 @@
 #include "simulate/light_source.hpp"
 #include "calibrate/rig_model.hpp"
 #include "console/failure.hpp"
+#include "console/keys.hpp"
 #include "console/progress.hpp"
 #include <opencv2/imgproc.hpp>
 #include <algorithm>
