@@ -100,7 +100,7 @@ std::string listOf(const Acceptance& a, const std::function<std::string(const Le
     return list;
 }
 
-void setLengths(PageValues& page, const Acceptance& a)
+void setLengths(Json& page, const Acceptance& a)
 {
     const double millimetres = millimetresIn(a.unit);
     using Number = std::function<double(const LengthResult&)>;
@@ -220,7 +220,7 @@ std::string certificateJson(const Certificate& c)
 std::string certificateDcc(const Certificate& c)
 {
     const Acceptance& a = *c.acceptance;
-    PageValues page;
+    Json page = Json::object();
     for (const auto& entry : {std::make_pair("number", c.number()), {"date", c.label.date}, {"serial", c.label.serial},
                               {"customer", c.label.customer}, {"laboratory", c.label.laboratory}, {"person", c.label.person},
                               {"standard", c.label.standard}, {"environment", c.label.environment}, {"command", c.command},
@@ -233,7 +233,7 @@ std::string certificateDcc(const Certificate& c)
     page.set("opencv_version", CV_VERSION);
     page.set("conformity", conformityOf(a));
     setLengths(page, a);
-    PageList inputs, remarks;
+    std::vector<Json> inputs, remarks;
     for (const CertificateInput& input : c.inputs)
     {
         inputs.push_back({{"what", input.what}, {"name", textOf(input.name)}, {"sha256", input.sha256}});

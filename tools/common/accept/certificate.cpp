@@ -141,9 +141,9 @@ std::vector<size_t> lengthsOnPage(const Acceptance& a)
     return order;
 }
 
-PageList lengthsOf(const Acceptance& a)
+std::vector<Json> lengthsOf(const Acceptance& a)
 {
-    PageList list;
+    std::vector<Json> list;
     for (size_t i : lengthsOnPage(a))
     {
         const LengthResult& r = a.lengths[i];
@@ -175,9 +175,9 @@ std::vector<GumRow> rowsOnPage(const GumTable& table)
     return rows;
 }
 
-PageList budgetOf(const GumTable& table, const std::string& unit)
+std::vector<Json> budgetOf(const GumTable& table, const std::string& unit)
 {
-    PageList rows;
+    std::vector<Json> rows;
     for (const GumRow& row : rowsOnPage(table))
     {
         rows.push_back({{"source", row.source}, {"std", row.knownTo(unit)},
@@ -188,7 +188,7 @@ PageList budgetOf(const GumTable& table, const std::string& unit)
     return rows;
 }
 
-void setLabel(PageValues& page, const CertificateLabel& label)
+void setLabel(Json& page, const CertificateLabel& label)
 {
     for (const auto& entry : {std::make_pair("date", label.date), {"issued", label.issued}, {"serial", label.serial},
                               {"customer", label.customer}, {"laboratory", label.laboratory}, {"address", label.address},
@@ -210,9 +210,9 @@ std::string verdictOf(const Acceptance& a)
     }
 }
 
-PageList inputsOf(const Certificate& c)
+std::vector<Json> inputsOf(const Certificate& c)
 {
-    PageList list;
+    std::vector<Json> list;
     for (const CertificateInput& input : c.inputs)
     {
         list.push_back({{"what", input.what}, {"name", input.name}, {"sha256", input.sha256}});
@@ -307,7 +307,7 @@ std::string Certificate::number() const
 std::string certificateHtml(const Certificate& c)
 {
     const Acceptance& a = *c.acceptance;
-    PageValues page;
+    Json page = Json::object();
     setLabel(page, c.label);
     page.set("number", c.number());
     page.set("verdict", verdictOf(a));

@@ -77,11 +77,33 @@ private:
     }
 };
 
+Json::Json(std::nullptr_t) {}
+
+Json::Json(bool flag) : kind_(FLAG), flag_(flag) {}
+
+Json::Json(int number) : kind_(WHOLE), whole_(number) {}
+
+Json::Json(size_t number) : kind_(WHOLE), whole_((int64_t)number) {}
+
+Json::Json(double number) : kind_(NUMBER), number_(number) {}
+
+Json::Json(const char* text) : kind_(TEXT), text_(text) {}
+
+Json::Json(const std::string& text) : kind_(TEXT), text_(text) {}
+
+Json::Json(const Json& other) = default;
+Json::Json(Json&& other) noexcept = default;
+Json& Json::operator=(const Json& other) = default;
+Json& Json::operator=(Json&& other) noexcept = default;
+Json::~Json() = default;
+
 Json::Json(const std::vector<double>& numbers) : kind_(LIST), items_(numbers.begin(), numbers.end()) {}
 
 Json::Json(const std::vector<int>& numbers) : kind_(LIST), items_(numbers.begin(), numbers.end()) {}
 
 Json::Json(const std::vector<std::string>& texts) : kind_(LIST), items_(texts.begin(), texts.end()) {}
+
+Json::Json(const std::vector<Json>& items) : kind_(LIST), items_(items) {}
 
 Json::Json(std::initializer_list<JsonMember> members) : kind_(OBJECT)
 {
@@ -173,6 +195,13 @@ const std::string& Json::asText() const
     if (kind_ != TEXT)
         throw Error("a text is missing");
     return text_;
+}
+
+bool Json::asFlag() const
+{
+    if (kind_ != FLAG)
+        throw Error("true or false is missing");
+    return flag_;
 }
 
 double Json::asNumber() const

@@ -25,17 +25,24 @@ struct JsonMember;
 class Json
 {
 public:
-    Json(std::nullptr_t = nullptr) {}
-    Json(bool flag) : kind_(FLAG), flag_(flag) {}
+    // None of these is inline: each value of an object that is written down would be seven of them.
+    Json(std::nullptr_t = nullptr);
+    Json(bool flag);
     Json(const void*) = delete;                                 // would be a flag
-    Json(int number) : kind_(WHOLE), whole_(number) {}
-    Json(size_t number) : kind_(WHOLE), whole_((int64_t)number) {}
-    Json(double number) : kind_(NUMBER), number_(number) {}
-    Json(const char* text) : kind_(TEXT), text_(text) {}
-    Json(const std::string& text) : kind_(TEXT), text_(text) {}
+    Json(int number);
+    Json(size_t number);
+    Json(double number);
+    Json(const char* text);
+    Json(const std::string& text);
+    Json(const Json& other);
+    Json(Json&& other) noexcept;
+    Json& operator=(const Json& other);
+    Json& operator=(Json&& other) noexcept;
+    ~Json();
     Json(const std::vector<double>& numbers);
     Json(const std::vector<int>& numbers);
     Json(const std::vector<std::string>& texts);
+    Json(const std::vector<Json>& items);
     Json(std::initializer_list<JsonMember> members);
     static Json array(std::initializer_list<Json> items = {});
     static Json object();
@@ -66,6 +73,7 @@ public:
     bool isText() const { return kind_ == TEXT; }
     const std::vector<Json>& items() const;                     //!< of a list
     const std::string& asText() const;
+    bool asFlag() const;
     double asNumber() const;
     std::vector<double> asNumbers() const;
     std::vector<int> asWholes() const;

@@ -105,11 +105,11 @@ std::string t2Figure(const CheckHistory& history, const HistoryResult& result)
     return plot.svg();
 }
 
-PageList estimateRows(const CheckHistory& history, const HistoryResult& result, const MatrixXd& covariance)
+std::vector<Json> estimateRows(const CheckHistory& history, const HistoryResult& result, const MatrixXd& covariance)
 {
     const std::vector<int> first = firstParameters(history.changes);
     const Estimates last = estimatesOf(history, history.checks.back(), covariance);
-    PageList list;
+    std::vector<Json> list;
     for (size_t c = 0; c < history.changes.size(); c++)
         for (int i = first[c]; i < first[c + 1]; i++)
         {
@@ -125,9 +125,9 @@ PageList estimateRows(const CheckHistory& history, const HistoryResult& result, 
     return list;
 }
 
-PageList checkRows(const CheckHistory& history, const HistoryResult& result)
+std::vector<Json> checkRows(const CheckHistory& history, const HistoryResult& result)
 {
-    PageList list;
+    std::vector<Json> list;
     for (size_t t = 0; t < history.checks.size(); t++)
     {
         const CheckRecord& check = history.checks[t];
@@ -142,9 +142,9 @@ PageList checkRows(const CheckHistory& history, const HistoryResult& result)
     return list;
 }
 
-PageList figures(const CheckHistory& history, const HistoryResult& result, const MatrixXd& covariance)
+std::vector<Json> figures(const CheckHistory& history, const HistoryResult& result, const MatrixXd& covariance)
 {
-    PageList list;
+    std::vector<Json> list;
     for (int c = 0; c < (int)history.changes.size(); c++)
     {
         list.push_back({{"title", history.changes[c].name}, {"svg", changeFigure(history, result, covariance, c)}});
@@ -156,7 +156,7 @@ PageList figures(const CheckHistory& history, const HistoryResult& result, const
 
 std::string historyPage(const CheckHistory& history, const HistoryResult& result, const MatrixXd& covariance, const HistoryFacts& facts)
 {
-    PageValues page;
+    Json page = Json::object();
     page.set("verdict", facts.verdict);
     page.set("verdict_class", facts.isGood ? "good" : "bad");
     page.set("has_serial", !history.serial.empty());

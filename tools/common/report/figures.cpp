@@ -144,15 +144,15 @@ static Figure drawInfluence(const RigCalibration& c, int camera)
     return {plot.svg(), ""};
 }
 
-static PageValues figure(const Figure& picture, const std::string& title, const std::string& reading)
+static Json figure(const Figure& picture, const std::string& title, const std::string& reading)
 {
     return {{"title", title}, {"svg", picture.svg},
             {"reading", reading + (picture.note.empty() ? "" : " (" + picture.note + ")") + "."}};
 }
 
-PageList figuresOf(const RigCalibration& c, int camera, Progress& progress)
+std::vector<Json> figuresOf(const RigCalibration& c, int camera, Progress& progress)
 {
-    PageList list;
+    std::vector<Json> list;
     auto add = [&](const Figure& picture, const char* title, const char* reading) {
         list.push_back(figure(picture, title, reading));
         progress.step();
@@ -174,7 +174,7 @@ PageList figuresOf(const RigCalibration& c, int camera, Progress& progress)
     return list;
 }
 
-PageValues errorOverRange(const RigCalibration& c, const Assessment& a, Progress& progress)
+Json errorOverRange(const RigCalibration& c, const Assessment& a, Progress& progress)
 {
     progress.step();
     return figure(drawErrorOverRange(c, a), "Expected error over the range", "How far a measured point lies from the truth (one "
@@ -182,7 +182,7 @@ PageValues errorOverRange(const RigCalibration& c, const Assessment& a, Progress
                   "where they meet, only a better image would");
 }
 
-void addErrorMaps(PageList& list, const RigCalibration& c, const Assessment& a, Progress& progress)
+void addErrorMaps(std::vector<Json>& list, const RigCalibration& c, const Assessment& a, Progress& progress)
 {
     const Vec2d scale = commonScale(a.errors);
     for (const ErrorMap& map : a.errors)
@@ -198,12 +198,12 @@ void addErrorMaps(PageList& list, const RigCalibration& c, const Assessment& a, 
     }
 }
 
-PageList rigFigures(const RigCalibration& c, Progress& progress)
+std::vector<Json> rigFigures(const RigCalibration& c, Progress& progress)
 {
     const char* reading = "To scale, obliquely from above: the cameras with their numbers, the part of each window that they look "
                           "through, their middle rays bending at it, and the points that were seen; a camera that is not where you "
                           "mounted it shows here";
-    PageList list;
+    std::vector<Json> list;
     list.push_back(figure(drawRig(c, 35.), "The rig from behind", reading));
     progress.step();
     list.push_back(figure(drawRig(c, -60.), "The rig from the other side", reading));

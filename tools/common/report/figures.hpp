@@ -37,15 +37,15 @@ Figure drawErrorOverRange(const RigCalibration& calibration, const Assessment& a
 class Progress;
 
 //! Of one camera.
-PageList figuresOf(const RigCalibration& calibration, int camera, Progress& progress);
+std::vector<Json> figuresOf(const RigCalibration& calibration, int camera, Progress& progress);
 
 //! The rig from two sides.
-PageList rigFigures(const RigCalibration& calibration, Progress& progress);
+std::vector<Json> rigFigures(const RigCalibration& calibration, Progress& progress);
 
-PageValues errorOverRange(const RigCalibration& calibration, const Assessment& assessment, Progress& progress);
+Json errorOverRange(const RigCalibration& calibration, const Assessment& assessment, Progress& progress);
 
 //! Over the image, at each range.
-void addErrorMaps(PageList& list, const RigCalibration& calibration, const Assessment& assessment, Progress& progress);
+void addErrorMaps(std::vector<Json>& list, const RigCalibration& calibration, const Assessment& assessment, Progress& progress);
 
 /* Small copies of the images with the detected points, as some mistakes are seen at once in an image and in no number. */
 

@@ -11,41 +11,39 @@ using kainjow::mustache::data;
 
 namespace tools {
 
-//! To what the library takes.
-class PageConverter
+static data dataOf(const Json& page)
 {
-public:
-    static data dataOf(const PageValues& page)
+    data object;
+    for (const std::string& name : page.names())
     {
-        data object;
-        for (const auto& [name, value] : page.values_)
-            object.set(name, value.kind == PageValues::Value::TEXT ? data(toUtf8(value.text))
-                       : value.kind == PageValues::Value::FLAG ? data(value.flag) : listOf(value.list));
-        return object;
+        const Json& value = page.at(name);
+        if (value.isText())
+            object.set(name, data(toUtf8(value.asText())));
+        else if (!value.isList())
+            object.set(name, data(value.asFlag()));
+        else
+        {
+            data list{data::type::list};
+            for (const Json& entry : value.items())
+                list << dataOf(entry);
+            object.set(name, list);
+        }
     }
+    return object;
+}
 
-private:
-    static data listOf(const PageList& entries)
-    {
-        data list{data::type::list};
-        for (const PageValues& entry : entries)
-            list << dataOf(entry);
-        return list;
-    }
-};
-
-PageList pageList(const std::vector<std::string>& texts)
+std::vector<Json> pageList(const std::vector<std::string>& texts)
 {
-    PageList list;
+    std::vector<Json> list;
     for (const std::string& text : texts)
         list.push_back({{"text", text}});
     return list;
 }
 
-std::string renderPage(const std::string& name, const char* pageTemplate, const PageValues& page)
+std::string renderPage(const std::string& name, const char* pageTemplate, const Json& page)
 {
     kainjow::mustache::mustache mustache(pageTemplate);
-    const std::string text = mustache.render(PageConverter::dataOf(page));
+    const std::string text = mustache.render(dataOf(page));
     if (!mustache.is_valid())
         throw Failure(name + "'s template is broken: " + mustache.error_message());
     return text;

@@ -22,9 +22,9 @@ namespace tools {
 
 namespace {
 
-PageList rowsOf(const std::vector<SummaryRow>& rows)
+std::vector<Json> rowsOf(const std::vector<SummaryRow>& rows)
 {
-    PageList list;
+    std::vector<Json> list;
     for (const SummaryRow& row : rows)
     {
         list.push_back({{"name", row.name}, {"cells", pageList(row.cells)}});
@@ -63,7 +63,7 @@ std::string timeText(const RigCalibration& c)
 
 /** The first sheet of paper has room for so many sentences and rows; the pages after it have all.
 @param name of the list in the template; it also gets has_NAME and more_NAME */
-void setOnSheet(PageValues& page, const std::string& name, const std::vector<std::string>& sentences, size_t room)
+void setOnSheet(Json& page, const std::string& name, const std::vector<std::string>& sentences, size_t room)
 {
     const size_t shown = std::min(room, sentences.size());
     page.set(name, pageList({sentences.begin(), sentences.begin() + shown}));
@@ -79,7 +79,7 @@ bool hasRoom(const Findings& f)
     return f.contradictions.size() + f.weak.size() + f.limits.size() <= FEW;
 }
 
-void setSheet(PageValues& page, const RigCalibration& c, const Assessment& a, const Findings& f)
+void setSheet(Json& page, const RigCalibration& c, const Assessment& a, const Findings& f)
 {
     const size_t CONTRADICTIONS = 3, WEAK = 5, GIVEN = 14, CANNOT_TELL = 4;
     setOnSheet(page, "sheet_contradictions", f.contradictions, CONTRADICTIONS);
@@ -117,7 +117,7 @@ std::string subjectOf(const RigCalibration& c)
 }
 
 //! Verdict in plain words: the class colours the card.
-void setVerdict(PageValues& page, const RigCalibration& c, const Findings& f)
+void setVerdict(Json& page, const RigCalibration& c, const Findings& f)
 {
     page.set("verdict", f.verdict());
     page.set("verdict_class", f.tone() == Tone::BAD ? "bad" : f.tone() == Tone::GOOD ? "good" : "weak");
@@ -135,7 +135,7 @@ void setVerdict(PageValues& page, const RigCalibration& c, const Findings& f)
     page.set("place_note", isRound(window) ? "The centre is seen from the camera" : "The normal points from the camera to the scene");
     page.set("headline", headline(c));
     page.set("windows", windows);
-    PageList limits;
+    std::vector<Json> limits;
     for (const LimitCheck& limit : f.limits)
     {
         limits.push_back({{"mark", limit.met() ? "✓" : "✗"}, {"class", limit.met() ? "met" : "missed"},
@@ -145,7 +145,7 @@ void setVerdict(PageValues& page, const RigCalibration& c, const Findings& f)
     page.set("time", timeText(c));
     page.set("serial", c.label.serial);
     page.set("has_serial", !c.label.serial.empty());
-    PageList notes;
+    std::vector<Json> notes;
     for (const auto& note : c.label.notes)
     {
         notes.push_back({{"key", note.first}, {"text", note.second}});
@@ -154,13 +154,13 @@ void setVerdict(PageValues& page, const RigCalibration& c, const Findings& f)
 }
 
 //! Parameters with their standard deviations, and their correlations as coloured cells.
-void setParameters(PageValues& page, const Fit& fit)
+void setParameters(Json& page, const Fit& fit)
 {
     const std::vector<EstimatedParameter> window = estimatedWindowParameters(fit);
     std::vector<EstimatedParameter> all = window;
     const std::vector<EstimatedParameter> rig = estimatedRigParameters(fit);
     all.insert(all.end(), rig.begin(), rig.end());
-    PageList parameters, correlations, heads;
+    std::vector<Json> parameters, correlations, heads;
     for (const EstimatedParameter& p : all)
     {
         const int decimals = decimalsOf(p.std);
@@ -168,8 +168,8 @@ void setParameters(PageValues& page, const Fit& fit)
     }
     for (const EstimatedParameter& p : window)
     {
-        PageValues entry;
-        PageList cells;
+        Json entry = Json::object();
+        std::vector<Json> cells;
         entry.set("name", p.name);
         for (const EstimatedParameter& q : window)
         {
@@ -188,22 +188,22 @@ void setParameters(PageValues& page, const Fit& fit)
     page.set("many_correlations", window.size() > BESIDE);
 }
 
-void setTable(PageValues& page, const std::string& name, const std::vector<SummaryRow>& rows)
+void setTable(Json& page, const std::string& name, const std::vector<SummaryRow>& rows)
 {
     page.set(name, rowsOf(rows));
     page.set("has_" + name, !rows.empty());
 }
 
 //! Views by cameras: how many points each saw through its window, coloured by their share.
-void setSightings(PageValues& page, const RigCalibration& c)
+void setSightings(Json& page, const RigCalibration& c)
 {
-    PageList rows;
+    std::vector<Json> rows;
     std::vector<int> pointsSeenBy(c.data.cameraCount + 1);
     for (int i : c.fit.views)
     {
         const View& view = c.data.views[i];
         std::vector<int> seenBy(view.objectPoints.size());
-        PageList cells;
+        std::vector<Json> cells;
         for (int k = 0; k < c.data.cameraCount; k++)
         {
             int count = 0;
@@ -231,9 +231,9 @@ void setSightings(PageValues& page, const RigCalibration& c)
     page.set("sightings_note", note + ".");
 }
 
-void setPhotos(PageValues& page, const RigCalibration& c, const std::vector<Photo>& photos, Progress& progress)
+void setPhotos(Json& page, const RigCalibration& c, const std::vector<Photo>& photos, Progress& progress)
 {
-    PageList list, scale;
+    std::vector<Json> list, scale;
     for (const Photo& photo : photos)
     {
         const Thumbnail thumbnail = makeThumbnail(c, photo);
@@ -258,7 +258,7 @@ void setPhotos(PageValues& page, const RigCalibration& c, const std::vector<Phot
 std::string makeReport(const RigCalibration& c, const Assessment& assessment, const Findings& findings,
                        const std::string& commandLine, bool quiet)
 {
-    PageValues page;
+    Json page = Json::object();
     setVerdict(page, c, findings);
     setSheet(page, c, assessment, findings);
     page.set("given", rowsOf(givenRows(c)));
@@ -294,7 +294,7 @@ std::string makeReport(const RigCalibration& c, const Assessment& assessment, co
     const std::vector<Photo> photos = photosToShow(c);
     Progress progress("drawing the report", (c.influences.empty() ? 5 : 6)*c.data.cameraCount + (isRig ? 2 : 0)
                                              + (int)(assessment.errors.size() + photos.size()) + 1, quiet);
-    PageList onSheet, after;
+    std::vector<Json> onSheet, after;
     (hasRoom(findings) ? onSheet : after).push_back(errorOverRange(c, assessment, progress));
     addErrorMaps(after, c, assessment, progress);
     page.set("sheet_figures", onSheet);
@@ -304,7 +304,7 @@ std::string makeReport(const RigCalibration& c, const Assessment& assessment, co
         page.set("rig_figures", rigFigures(c, progress));
         setSightings(page, c);
     }
-    PageList cameras, heads;
+    std::vector<Json> cameras, heads;
     for (int k = 0; k < c.data.cameraCount; k++)
     {
         const std::string name = c.data.cameraCount == 1 ? "Camera" : format("Camera %d", k + 1);
