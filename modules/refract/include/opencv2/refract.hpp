@@ -1074,7 +1074,7 @@ Each camera is replaced by a pinhole camera at its *virtual centre*, a point on 
 the window's normal. The virtual centres minimise the row differences of both new images over depthRange. On one plane in the
 middle of it, z = 2/(1/near + 1/far) in the rectified frame, the rows agree exactly. With maps for that plane any matcher finds
 most of the scene. With maps for the depths that it found (refractiveRectifiedDepth) the rows agree everywhere.
-refractiveReprojectImageTo3D is exact for any row differences.
+refractiveReprojectImageTo3D is exact where they agree, whatever the maps.
 
 The *rectified frame* is the frame of camera 1 rotated by R1. P1 and P2 project points of it: their last columns contain the
 virtual centres and, as in calib3d, P2 the baseline.
@@ -1176,8 +1176,8 @@ CV_EXPORTS_W void refractiveRectifiedDepth(InputArray disparity, InputArray P1, 
 
 /** @brief cv::reprojectImageTo3D for cameras behind windows: the maximum-likelihood point of each pair of raw pixels.
 
-Rectified pixels are mapped back to raw pixels, and these are triangulated (triangulateRefractive). So row errors of the
-rectification have no effect on the result.
+Rectified pixels are mapped back to raw pixels, and these are triangulated (triangulateRefractive): exact where the rows of the
+new images agree. A disparity has no rows: where they differ it is of a pixel beside the right one, by as much.
 
 @param disparity of the new image 1; types as cv::reprojectImageTo3D, without fractional bits. NaN or infinite: none.
 @param _3dImage points of the rectified frame, three channels; multiply by R1's inverse for the frame of camera 1. NaN where
@@ -1285,8 +1285,8 @@ GlassCalibrationFlags). The result is a minimum: the remaining step to it is bel
 camera many initial values are tried, so that its focal length must be known only to some 10 %, and its window's distance only
 to a factor of 3. Throws if the change that criteria ask for (EPS) is not reached in their iterations (COUNT); with COUNT alone
 the current result is returned. Throws if the residuals of pairs are far larger than errors of detected corners can be: direct
-and refracted points swapped, or not of the same unmoved target. A wrong thickness or index does not throw; it increases the
-returned error. Throws Error::StsNotImplemented in a build without Ceres, as the other forms do.
+and refracted points swapped, or not of the same unmoved target, or a scene's medium that is another. A wrong thickness or index
+of the window does not throw; it increases the returned error. Throws Error::StsNotImplemented in a build without Ceres, as the other forms do.
 */
 CV_EXPORTS_W double calibrateGlass(InputArrayOfArrays objectPoints, InputArrayOfArrays imagePointsDirect,
         InputArrayOfArrays imagePointsRefracted, InputArray cameraMatrix, InputArray distCoeffs,
@@ -1597,7 +1597,7 @@ camera.
 @param tvecs scene -> camera 1 translation of each view; as rvecs.
 @param points3D M scene points, initial value and result, Nx1 3-channel. Empty, or NaN for a point: its initial value is
 triangulated from its rays. The result is NaN for a point of which fewer than three coordinates were observed (with
-GLASS_ROBUST: by inliers), or whose rays do not meet.
+GLASS_ROBUST: by inliers), whose rays do not meet, or that may as well be elsewhere, as half pixels and lengths leave some.
 @param lengths Lx4 CV_64F (or std::vector<Vec4d>): index of a point, index of another, their distance, its standard
 deviation > 0 (NaN: not known, so that it tells nothing); noArray(): none.
 @param stdDeviations Px1 CV_64F: parameters of each camera (as calibrateGlass), then rvec (3) and T (3) of each but the first.
