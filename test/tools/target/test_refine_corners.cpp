@@ -88,5 +88,5 @@ TEST_CASE("Noise beside a board that a wide-angle lens bends does not hold up th
     cv::Mat noise(image.size(), CV_16S), sum;
     cv::RNG(1).fill(noise, cv::RNG::NORMAL, 0, 8);
     cv::add(image, noise, image, cv::noArray(), CV_8U);
-    CHECK(detectChessboard(image, cv::Size(9, 6), nullptr).empty());        // it has 7 x 5 corners, in minutes if OpenCV looks at each speck
+    CHECK(detectChessboard(image, cv::Size(9, 6), nullptr).empty());        // it has 7 x 5; in minutes if OpenCV looks at each speck
 }
