@@ -105,6 +105,30 @@ TEST_CASE("Two windows of a rig from perfect data, with pairs and without", "[st
     }
 }
 
+TEST_CASE("R and T are found from crude values, and from wrong ones", "[stereo_glass]")
+{
+    const StereoRig truth = paperRig();
+    for (int trial = 0; trial < trials(40); trial++)
+    {
+        Random random(4100 + trial);
+        const StereoScene scene = makeStereoScene(truth, 6, random, 0.1);
+        StereoRig start = withWindows(truth, pane(), pane());
+        const double angles[] = { 0.05, 0.1, 0.2, 1 }, factors[] = { 1, 0, -1, 4 };
+        Matx33d turn;
+        Rodrigues(random.vector(angles[trial % 4]), turn);
+        start.R = turn*truth.R;
+        start.T = factors[trial/4 % 4]*truth.T + random.vector(30);
+        for (int flags : { (int)GLASS_FREE_EXTRINSICS, GLASS_FREE_EXTRINSICS | GLASS_ROBUST })
+        {
+            StereoRig found = start;
+            CAPTURE(trial, flags, start.R, start.T, seed());
+            CHECK(calibrate(scene, found, flags) < 0.17);
+            CHECK(norm(found.R - truth.R) < 2e-3);
+            CHECK(norm(found.T - truth.T) < 1.5);
+        }
+    }
+}
+
 TEST_CASE("R and T are found with the windows", "[stereo_glass]")
 {
     Random random(410);

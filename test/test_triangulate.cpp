@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // triangulateRefractive.
-#include "scenes.hpp"
+#include "rig_scenes.hpp"
 
 #include <opencv2/calib3d.hpp>
 #include <map>
@@ -431,4 +431,34 @@ TEST_CASE("Bad arguments of triangulateRefractive are named", "[triangulate]")
                Contains("T[0]") && Contains("nan"));
     CHECK_THAT(thrown([&] { Mat s, c; triangulateRefractive(camera, camera, R, T, two, two, out, s, 0, -1., noArray(), c); }),
                Contains("pixelSigma") && Contains("-1"));
+}
+
+TEST_CASE("A point whose likeliest place is at infinity has none", "[triangulate]")
+{
+    int found = 0, parallel = 0;
+    const RigTruth rig = paperStereo();
+    for (int trial = 0; trial < trials(400); trial++)
+    {
+        Random random(950 + trial);
+        const double z = 1e6;
+        const Point3d X(random.uniform(-0.1, 0.2)*z, random.uniform(-0.1, 0.1)*z, z);
+        std::vector<Point2d> pixels[2];
+        std::vector<uchar> status;
+        Mat points, covariance;
+        for (int c = 0; c < 2; c++)
+        {
+            refractiveProjectPoints(std::vector<Point3d>(1, X), rig.Rs[c], rig.Ts[c], rig.cameras[c], pixels[c], status);
+            pixels[c][0] += Point2d(random.normal(1), random.normal(1));
+        }
+        triangulateRefractive(rig.cameras[0], rig.cameras[1], rig.Rs[1], rig.Ts[1], pixels[0], pixels[1], points, status, 0, 1, noArray(),
+                              covariance);
+        CAPTURE(trial, (int)status[0], points, covariance, seed());
+        CHECK((status[0] == REFRACT_OK) == checkRange(covariance));
+        if (status[0] == REFRACT_OK)
+            CHECK(norm(points) < 1e13);
+        found += status[0] == REFRACT_OK;
+        parallel += status[0] == REFRACT_PARALLEL_RAYS;
+    }
+    CAPTURE(found, parallel);
+    CHECK(found > 0);
 }

@@ -238,7 +238,8 @@ std::string unitOf(const Calibration& file, const std::string& path, const Bundl
 
 } // namespace
 
-void addFree(int flags, RigModel& rig, cv::Mat& covariance)
+//! What flags free and the windows have not yet, which starts at 0; of what was known nothing is lost.
+static void addFree(int flags, RigModel& rig, cv::Mat& covariance)
 {
     RigModel larger = rig.clone();
     for (const cv::Ptr<RefractiveCamera>& camera : larger.cameras)

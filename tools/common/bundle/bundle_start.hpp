@@ -21,9 +21,6 @@ within that.
 @param of how well the values of a window are given */
 cv::Mat covarianceOfGiven(const std::function<GivenStd(const cv::refract::GlassWindow&)>& of, int flags, RigModel& rig);
 
-//! What flags free and the windows have not yet, which starts at 0; of what was known nothing is lost.
-void addFree(int flags, RigModel& rig, cv::Mat& covariance);
-
 //! What is free again: the earlier calibration has no say. @param free names of --free
 void forget(const std::vector<std::string>& free, const RigModel& rig, cv::Mat& covariance);
 

@@ -142,7 +142,8 @@ const double VAGUE = 0.1;       // of a scale that the window alone tells: what 
 
 } // namespace
 
-std::vector<NearestPinhole> pinholesOf(const Survey& survey, const SurveyAdjustment& adjustment)
+//! Of each camera, by the points that it sees.
+static std::vector<NearestPinhole> pinholesOf(const Survey& survey, const SurveyAdjustment& adjustment)
 {
     const RigModel& rig = adjustment.bundle.fit.rig;
     std::vector<std::vector<Point3d>> seen(rig.cameras.size());

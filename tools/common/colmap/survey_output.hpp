@@ -23,9 +23,6 @@ struct SurveyResult
     std::string unit;
 };
 
-//! Of each camera, by the points that it sees.
-std::vector<NearestPinhole> pinholesOf(const Survey& survey, const SurveyAdjustment& adjustment);
-
 //! id,x,y,z,sx,sy,sz,images,angle_deg,status, one row a point of the model.
 std::string surveyPointsCsv(const SurveyResult& result);
 

@@ -68,7 +68,8 @@ void forgetOutside(const Calibration& calibration, Measurement& m)
             }
 }
 
-std::string outsideIn(const Calibration& calibration, const Measurement& m, const std::vector<std::string>& ids)
+//! What to say of points outside, with the first one by its name; empty: there are none.
+static std::string outsideIn(const Calibration& calibration, const Measurement& m, const std::vector<std::string>& ids)
 {
     std::string first;
     int count = 0;

@@ -18,9 +18,6 @@ namespace tools {
 consistency is checked, which they would distort. Cameras whose image size is not known are left out. */
 void forgetOutside(const Calibration& calibration, Measurement& measurement);
 
-//! What to say of them, with the first one by its name; empty: there are none.
-std::string outsideIn(const Calibration& calibration, const Measurement& measurement, const std::vector<std::string>& ids);
-
 /* Do lengths that were measured agree with those of a target? Their mean ratio is known far better than any of them, by the noise of all
 pixels and the calibration's covariance, in which their errors are common. */
 

@@ -92,7 +92,8 @@ TextureOptions readTexture(const FileNode& node, const std::string& filename)
 
 } // namespace
 
-TexturedScene readSurfaces(const FileNode& scene, const FileNode& texture, const std::string& filename)
+//! Throws Failure that names the file and the key.
+static TexturedScene readSurfaces(const FileNode& scene, const FileNode& texture, const std::string& filename)
 {
     TexturedScene result;
     if (!scene.isSeq() || scene.size() == 0)

@@ -45,9 +45,6 @@ namespace tools {
                               # right: [1., 0., 0.], half_size: [200., 100.]           a rectangle
       - { shape: sphere, center: [0., 0., 700.], radius: 80., color: [1., 0.8, 0.6] } */
 
-//! Throws Failure that names the file and the key.
-TexturedScene readSurfaces(const cv::FileNode& scene, const cv::FileNode& texture, const std::string& filename);
-
 struct NamedPose
 {
     std::string stem;       //!< name of the poses and a number: pair1

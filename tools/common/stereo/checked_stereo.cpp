@@ -110,7 +110,10 @@ private:
 
 } // namespace
 
-Mat pointSigma(const RectifiedRig& rig, const DenseStereo& stereo, double contradiction)
+/** One standard deviation of x, y and z of each point (camera-1 frame): that of its disparity, along the line of sight, and what
+the calibration's covariance, if there is one, does to all points; CV_32FC3.
+@param contradiction share of its distance by which a point may be off beside that, as the images contradict the calibration */
+static Mat pointSigma(const RectifiedRig& rig, const DenseStereo& stereo, double contradiction)
 {
     const CalibrationVariance calibration(rig);
     const Vec3d centre = Matx33d(rig.R1.ptr<double>()).t()*rig.centre();

@@ -36,11 +36,6 @@ struct RowCheck
 
 RowCheck checkRows(const RectifiedRig& rig, const DenseStereo& stereo);
 
-/** One standard deviation of x, y and z of each point (camera-1 frame): that of its disparity, along the line of sight, and what
-the calibration's covariance, if there is one, does to all points; CV_32FC3.
-@param contradiction share of its distance by which a point may be off beside that, as the images contradict the calibration */
-cv::Mat pointSigma(const RectifiedRig& rig, const DenseStereo& stereo, double contradiction);
-
 struct PairDiagnosis;
 
 struct CheckedStereo

@@ -144,8 +144,11 @@ std::vector<DetectedImage> readPointsCsv(const std::string& path)
     return views;
 }
 
-std::vector<DetectedImage> readPointTableOf(const Target& target, const std::string& path, int camera, cv::Size imageSize,
-                                            const std::string& yFrom)
+/** Images of a target whose dots have names: a table of points in any program's form (point_table.hpp), whose points are called as the
+target's. One that has pixels of one camera only is that of each; a table without frames is one view.
+@param yFrom see PixelOrigin */
+static std::vector<DetectedImage> readPointTableOf(const Target& target, const std::string& path, int camera, cv::Size imageSize,
+                                                   const std::string& yFrom)
 {
     const PixelOrigin origin = {yFrom, std::vector<cv::Size>(camera + 1, imageSize)};
     const CsvTable table = readPointTable(path, {"id", "u1", "v1"}, "a table of points", origin);

@@ -35,12 +35,6 @@ image's stem. x, y, z are in the frame of the target and in the unit of all leng
 Throws Failure that names file and line, also if a view has a point twice. */
 std::vector<DetectedImage> readPointsCsv(const std::string& path);
 
-/** The same of a target whose dots have names: a table of points in any program's form (point_table.hpp), whose points are called as the
-target's. One that has pixels of one camera only is that of each; a table without frames is one view.
-@param yFrom see PixelOrigin */
-std::vector<DetectedImage> readPointTableOf(const Target& target, const std::string& path, int camera, cv::Size imageSize,
-                                            const std::string& yFrom);
-
 //! The images of one camera in one state (direct or through the window), in the order of their names.
 struct DetectedImages
 {

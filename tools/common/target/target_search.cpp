@@ -188,7 +188,8 @@ std::vector<cv::Point2d> detectIn(const cv::Mat& grey, const std::string& path, 
     }
 }
 
-cv::Size otherChessboard(const std::vector<Without>& images)
+//! The size of the chessboard that all these images show in place of the one that was asked for; empty if they do not agree.
+static cv::Size otherChessboard(const std::vector<Without>& images)
 {
     const cv::Size other = images[0].chessboard;
     const bool agree = std::all_of(images.begin(), images.end(), [&](const Without& image) { return image.chessboard == other; });

@@ -22,9 +22,6 @@ struct Without
 //! As Target::detect(); a Failure names the image.
 std::vector<cv::Point2d> detectIn(const cv::Mat& grey, const std::string& path, const Target& target, cv::Size* other = nullptr);
 
-//! The size of the chessboard that all these images show in place of the one that was asked for; empty if they do not agree.
-cv::Size otherChessboard(const std::vector<Without>& images);
-
 /** One sentence that says why the target is not found and what to do: a chessboard of another size, a part of the board in view, a target
 of another kind, or nothing at all.
 @param where the glob, in quotes

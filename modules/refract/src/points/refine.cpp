@@ -62,7 +62,7 @@ uchar refine(const PlacedCameras& cameras, const PixelBlock& block, int i, Vec3d
         if (!taken)
             return REFRACT_NOT_CONVERGED;
         if (moved <= DONE || (moved <= ROUNDING && moved >= 0.5*last))
-            return !block.hasHalf(i) || isDetermined(here) ? REFRACT_OK : REFRACT_PARALLEL_RAYS;
+            return isDetermined(here) ? REFRACT_OK : REFRACT_PARALLEL_RAYS;     // also the likeliest point at infinity
         last = moved;
     }
     return REFRACT_NOT_CONVERGED;

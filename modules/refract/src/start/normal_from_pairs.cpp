@@ -287,7 +287,8 @@ NormalEstimate normalFromPairs(const Camera& camera, const PixelViews& direct, c
         if (!refineNormal(pairs, n, basis, solution))
             return refusal("the iteration did not converge");
     }
-    const double squares = sumOfSquares(pairs, n, basis);
+    const double ROUNDING = 1e-16;      // square pixels
+    const double squares = sumOfSquares(pairs, n, basis), variance = std::max(squares/left, ROUNDING);      // NaN stays
 
     // The movement must stand out from what remains across the lines, else the lines' directions are noise.
     NormalEstimate estimate;
@@ -295,7 +296,7 @@ NormalEstimate normalFromPairs(const Camera& camera, const PixelViews& direct, c
     if (shift < 3*estimate.rms)
         return refusal(format("the points move by %.3g px (RMS) through the window, but miss the lines through the centre "
                               "by %.3g px; was the target moved within a pair?", shift, estimate.rms));
-    const Matx22d covariance = tangentCovariance(pairs, n, basis, squares/left);
+    const Matx22d covariance = tangentCovariance(pairs, n, basis, variance);
     Vec2d principal;
     Matx22d directions;
     eigen(covariance, principal, directions);
@@ -303,7 +304,7 @@ NormalEstimate normalFromPairs(const Camera& camera, const PixelViews& direct, c
     if (sigma > 0.5)
         return refusal(format("its standard deviation is %.0f degrees; take more views, or a target that fills more of the "
                               "image", sigma*180/CV_PI));
-    if (sigma == 0 || isFlat(pairs, n, basis*Vec2d(directions.row(0).val), sigma, squares/left, solution.cost))
+    if (sigma == 0 || isFlat(pairs, n, basis*Vec2d(directions.row(0).val), sigma, variance, solution.cost))
         return refusal("along one direction the points move no more than the pixels' noise makes them; use a target that fills more "
                        "of the image, or more views");
     estimate.normal = n[2] < 0 ? -n : n;

@@ -61,6 +61,36 @@ private:
     }
 };
 
+//! By which a focal length does what alpha says. @param shown in the middle of each new image, at focal length 1
+double scaleOf(const NewImages& images, const Point2d* shown, double focal, const RectifyOptions& options)
+{
+    const Size size = options.newImageSize;
+    const Point2d centre((size.width - 1)/2., (size.height - 1)/2.);
+    const double alpha = std::min(options.alpha, 1.);
+    double most = 0, least = std::numeric_limits<double>::infinity();
+    for (int c = 0; c < 2; c++)
+    {
+        const ShownRegion& region = images.regions[c];
+        Rect2d inner, outer;
+        if (!region.findInner(size, inner))
+            CV_Error_(Error::StsBadArg, ("alpha is %g: no point on a border of the image of camera%d can be shown by a pinhole "
+                                         "camera; its lens is too wide, or imageSize %dx%d is wrong. Use a negative alpha",
+                                         options.alpha, c + 1, options.imageSize.width, options.imageSize.height));
+        if (alpha > 0 && !region.findOuter(outer))
+            CV_Error_(Error::StsBadArg, ("alpha is %g: pixels of camera%d are 89 degrees or more from the axis of its new image, and "
+                                         "no pinhole camera shows them all. Use alpha 0 or a negative one", options.alpha, c + 1));
+        const double covers = alpha < 1 ? scaleToImage(inner - shown[c], Vec2d::all(focal), centre, size, true) : 0;
+        const double fits = alpha > 0 ? scaleToImage(outer - shown[c], Vec2d::all(focal), centre, size, false) : 0;
+        if (!(std::isfinite(covers) && std::isfinite(fits)))
+            CV_Error_(Error::StsBadArg, ("alpha is %g: no focal length fits, as the middle of new image %d is outside what camera%d sees: "
+                                         "the cameras look in too different directions%s", options.alpha, c + 1, c + 1,
+                                         options.flags & RECTIFY_ZERO_DISPARITY ? "; with flags 0 each image has its own" : ""));
+        most = std::max(most, covers);
+        least = std::min(least, fits);
+    }
+    return most*(1 - alpha) + (alpha > 0 ? least*alpha : 0);
+}
+
 NewCameras place(const StereoPair& pair, const VirtualPair& v, const NewImages& images, const RectifyOptions& options)
 {
     const int row = 1 - v.axis;
@@ -69,42 +99,15 @@ NewCameras place(const StereoPair& pair, const VirtualPair& v, const NewImages& 
     NewCameras result = { 0, { Point2d(), Point2d() } };
     for (const Camera* camera : { &pair.camera1, &pair.camera2 })   // straight ahead as large as in the raw images
         result.focal += 0.5*ratio*camera->cameraMatrix().at<double>(row, row)*paraxialMagnification(*camera);
-    Point2d* p = result.principal;
+    const Point2d mean = 0.5*(images.middle[0] + images.middle[1]), centre((size.width - 1)/2., (size.height - 1)/2.);
+    Point2d shown[2];           // in the middle of each new image, at focal length 1
     for (int c = 0; c < 2; c++)
-        p[c] = Point2d((size.width - 1)/2., (size.height - 1)/2.) - result.focal*images.middle[c];     // stays in the middle
-    const Point2d mean = 0.5*(p[0] + p[1]);
-    for (int c = 0; c < 2; c++)
-        p[c] = Point2d(v.axis == 0 && !(options.flags & RECTIFY_ZERO_DISPARITY) ? p[c].x : mean.x,
-                       v.axis == 1 && !(options.flags & RECTIFY_ZERO_DISPARITY) ? p[c].y : mean.y);
+        shown[c] = Point2d(v.axis == 0 && !(options.flags & RECTIFY_ZERO_DISPARITY) ? images.middle[c].x : mean.x,
+                           v.axis == 1 && !(options.flags & RECTIFY_ZERO_DISPARITY) ? images.middle[c].y : mean.y);
     if (options.alpha >= 0)
-    {
-        const double alpha = std::min(options.alpha, 1.);
-        double covers[] = { 0, 0 }, fits[] = { 0, 0 };
-        for (int c = 0; c < 2; c++)
-        {
-            const ShownRegion& region = images.regions[c];
-            const Vec2d focal(result.focal, result.focal);
-            Rect2d inner, outer;
-            if (!region.findInner(size, inner))
-                CV_Error_(Error::StsBadArg, ("alpha is %g: no point on a border of the image of camera%d can be shown by a pinhole "
-                                             "camera; its lens is too wide, or imageSize %dx%d is wrong. Use a negative alpha",
-                                             options.alpha, c + 1, options.imageSize.width, options.imageSize.height));
-            if (alpha > 0 && !region.findOuter(outer))
-                CV_Error_(Error::StsBadArg, ("alpha is %g: pixels of camera%d are 89 degrees or more from the axis of its new image, and "
-                                             "no pinhole camera shows them all. Use alpha 0 or a negative one", options.alpha, c + 1));
-            if (alpha < 1)
-                covers[c] = scaleToImage(inner, focal, p[c], size, true);
-            if (alpha > 0)
-                fits[c] = scaleToImage(outer, focal, p[c], size, false);
-        }
-        const double most = covers[0] > covers[1] ? covers[0] : covers[1], least = fits[0] < fits[1] ? fits[0] : fits[1];
-        const double scale = most*(1 - alpha) + least*alpha + 0*(covers[0] + fits[0]);      // NaN if one is
-        if (!(scale > 0 && std::isfinite(scale)))
-            CV_Error_(Error::StsBadArg, ("alpha is %g: no focal length fits, as a principal point, (%g, %g) or (%g, %g), is outside "
-                                         "the images; with flags 0 each image has its own", options.alpha, p[0].x, p[0].y,
-                                         p[1].x, p[1].y));
-        result.focal *= scale;
-    }
+        result.focal *= scaleOf(images, shown, result.focal, options);
+    for (int c = 0; c < 2; c++)
+        result.principal[c] = centre - result.focal*shown[c];
     return result;
 }
 
