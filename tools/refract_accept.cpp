@@ -363,7 +363,8 @@ int refract_accept_main(int argc, char** argv)
         const TestData data = readData(o, calibration, o.pixelSigma > 0 ? o.pixelSigma : pixelSigmaOf(calibration), command.quiet());
         const CertificateLabel label = o.label.completed(calibration, o.calibration, filesOf(o, data));
         const std::vector<std::string> hashes = requireNoneCalibrated(data.files, calibration);
-        std::vector<CalibratedLength> lengths = readLengths(o.lengths, data.points);
+        std::vector<std::string> untested;
+        std::vector<CalibratedLength> lengths = readLengths(o.lengths, data.points, untested);
         const std::vector<std::string> images = imagesOf(data.points, lengths);
         const bool byPixels = requireOtherImages(data.points, images, calibration);
         const bool isOwnBoard = areOfBoard(lengths, calibration.square);
@@ -377,6 +378,8 @@ int refract_accept_main(int argc, char** argv)
         acceptance.imagesChecked = byPixels || (!hashes.empty() && !calibration.provenance.images.empty());
         acceptance.notices = noticesOf(o, calibration, data.points, errors, acceptance.imagesChecked, images);
         acceptance.add(noise.remarks);
+        if (!untested.empty())
+            acceptance.add({remarkOfUntested(untested)});
         if (isOwnBoard)
             acceptance.add({format("The lengths are those of a board with the square that calibrated (%.6g): if it is that board, the "
                                    "scale is not tested; take another standard", calibration.square)});

@@ -380,9 +380,20 @@ TEST_CASE("What would make a test better than it is, is refused or remarked", "[
     CHECK(largestU(out / "better.csv", "") == Approx(U).epsilon(0.02));
     CHECK(mentions(jsonOf(out / "s.json")["notices"].dump(), "are not used"));
 
+    // An end that was not measured.
+    std::string some = readFile(points);
+    const size_t end = some.find('\n', some.find('\n') + 1);
+    REQUIRE(some.substr(end - 2, 2) == ",0");
+    some[end - 1] = '9';
+    writeFile(out / "some.csv", some);
+    largestU(out / "some.csv", "");
+    CHECK(mentions(jsonOf(out / "s.json")["notices"].dump(), "2 lengths were not tested, as an end was not measured (top, "));
+    CHECK(jsonOf(out / "s.json")["lengths"].size() == 16);
+
     // A volume of one's own: its numbers, and whose it is.
     largestU(points, " --volume=-10,10,-10,10,500,510 --certificate=" + out / "c.html");
     CHECK(mentions(jsonOf(out / "s.json")["notices"].dump(), "The volume is stated (--volume): x -10 ... 10"));
+    CHECK(mentions(readFile(out / "s.json"), "no length is within the stated volume"));
     CHECK(mentions(readFile(out / "c.html"), "dashed: the stated volume"));
 
     // The standard is 10 K warmer than its certificate.

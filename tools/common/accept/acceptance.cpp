@@ -104,6 +104,8 @@ std::vector<std::string> missingOf(const Acceptance& a)
                                  lines.size()));
     if (!a.volume.box)
         missing.push_back("the volume is not known, of whose diagonal the longest length must be two thirds (--volume)");
+    else if (longest == 0.)
+        missing.push_back("no length is within " + a.volume.name());
     else if (longest < OF_DIAGONAL*a.volume.box->diagonal())
         missing.push_back(format("the longest length is %.2g of the diagonal of %s, %.4g, not two thirds",
                                  longest/a.volume.box->diagonal(), a.volume.name().c_str(), a.volume.box->diagonal()));

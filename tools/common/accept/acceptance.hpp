@@ -42,8 +42,11 @@ struct StandardTemperature
 
 /** lengths.csv: name,image1,id1,image2,id2,length,U. Where both images are empty and the points have some, the length is one of each
 image that shows both of its points (a board); its name then goes on with the image. Refuses with a Failure that names file and
-line: a length without an uncertainty, a name or a pair that stands twice, points that are not there or have no answer. */
-std::vector<CalibratedLength> readLengths(const std::string& path, const TestPoints& points);
+line: a length without an uncertainty, a name or a pair that stands twice, points that are not there or have no answer.
+@param untested gets the names of lengths of an image of which an end was not measured there */
+std::vector<CalibratedLength> readLengths(const std::string& path, const TestPoints& points, std::vector<std::string>& untested);
+//! Empty: all were tested.
+std::string remarkOfUntested(const std::vector<std::string>& untested);
 
 //! The largest error that is allowed to a length: a number, or "A+L/K" as makers of measuring machines state it.
 class PermissibleError

@@ -45,8 +45,8 @@ public:
     PairsOfRow(const CsvTable& table, const CsvTable::Row& row, const PointIndex& index)
         : table_(table), row_(row), index_(index), points_(index.points()) {}
 
-    //! Indices into the points, and the image if it is one of many.
-    std::vector<std::pair<std::pair<size_t, size_t>, std::string>> all() const
+    //! Indices into the points, and the image if it is one of many. @param untested gets images in which an end was not measured
+    std::vector<std::pair<std::pair<size_t, size_t>, std::string>> all(std::vector<std::string>& untested) const
     {
         const std::string& image1 = table_.textOrNone(row_, "image1"), & image2 = table_.textOrNone(row_, "image2");
         const std::string& id1 = table_.text(row_, "id1"), & id2 = table_.text(row_, "id2");
@@ -57,8 +57,13 @@ public:
             return {{{answered(image1, id1), answered(image2, id2)}, ""}};
         std::vector<std::pair<std::pair<size_t, size_t>, std::string>> pairs;
         for (const std::string& image : images)
-            if (isAnswered(index_.find(image, id1)) && isAnswered(index_.find(image, id2)))
-                pairs.push_back({{index_.find(image, id1), index_.find(image, id2)}, image});
+        {
+            const int end1 = index_.find(image, id1), end2 = index_.find(image, id2);
+            if (isAnswered(end1) && isAnswered(end2))
+                pairs.push_back({{end1, end2}, image});
+            else if (end1 >= 0 || end2 >= 0)
+                untested.push_back(image);
+        }
         if (pairs.empty())
             throw Failure(table_.where(row_) + ": no image of '" + points_.source + "' shows both '" + id1 + "' and '" + id2
                           + "' with status 0");
@@ -92,6 +97,9 @@ private:
     const TestPoints& points_;
 };
 
+//! Of a length of each image.
+std::string nameIn(const std::string& name, const std::string& image) { return image.empty() ? name : name + ", " + image; }
+
 double positive(const CsvTable& table, const CsvTable::Row& row, const std::string& name, const std::string& advice)
 {
     const double number = table.numberOrNone(row, name);
@@ -119,7 +127,19 @@ CalibratedLength StandardTemperature::applied(const CalibratedLength& length) co
     return result;
 }
 
-std::vector<CalibratedLength> readLengths(const std::string& path, const TestPoints& points)
+std::string remarkOfUntested(const std::vector<std::string>& untested)
+{
+    const size_t MOST = 5;
+    if (untested.empty())
+        return "";
+    std::string names;
+    for (size_t i = 0; i < std::min(untested.size(), MOST); i++)
+        names += (i ? "; " : "") + untested[i];
+    return cv::format("%zu length%s not tested, as an end was not measured (%s%s)",
+                      untested.size(), untested.size() == 1 ? " was" : "s were", names.c_str(), untested.size() > MOST ? "; ..." : "");
+}
+
+std::vector<CalibratedLength> readLengths(const std::string& path, const TestPoints& points, std::vector<std::string>& untested)
 {
     const CsvTable table(path, splitAtCommas(HEADING), "a file of calibrated lengths");
     const PointIndex index(points);
@@ -136,7 +156,11 @@ std::vector<CalibratedLength> readLengths(const std::string& path, const TestPoi
             throw Failure(table.where(row) + ": U is as large as the length: is it in the unit of the length?");
         if (!lineOfName.emplace(name, row.line).second)
             throw Failure(table.where(row) + ": the name '" + name + cv::format("' stands in line %d already", lineOfName[name]));
-        for (const auto& pair : PairsOfRow(table, row, index).all())
+        std::vector<std::string> missing;
+        const auto pairs = PairsOfRow(table, row, index).all(missing);
+        for (const std::string& image : missing)
+            untested.push_back(nameIn(name, image));
+        for (const auto& pair : pairs)
         {
             const size_t a = pair.first.first, b = pair.first.second;
             if (a == b)
@@ -145,7 +169,7 @@ std::vector<CalibratedLength> readLengths(const std::string& path, const TestPoi
             if (!first.second)
                 throw Failure(table.where(row) + cv::format(": the length between these points stands in line %d already",
                                                                 first.first->second));
-            lengths.push_back({pair.second.empty() ? name : name + ", " + pair.second, {a, b}, length, U});
+            lengths.push_back({nameIn(name, pair.second), {a, b}, length, U});
         }
     }
     return lengths;

@@ -1285,8 +1285,9 @@ GlassCalibrationFlags). The result is a minimum: the remaining step to it is bel
 camera many initial values are tried, so that its focal length must be known only to some 10 %, and its window's distance only
 to a factor of 3. Throws if the change that criteria ask for (EPS) is not reached in their iterations (COUNT); with COUNT alone
 the current result is returned. Throws if the residuals of pairs are far larger than errors of detected corners can be: direct
-and refracted points swapped, or not of the same unmoved target, or a scene's medium that is another. A wrong thickness or index
-of the window does not throw; it increases the returned error. Throws Error::StsNotImplemented in a build without Ceres, as the other forms do.
+and refracted points swapped, not of the same unmoved target, or of a scene in another medium. A wrong thickness or index of the
+window does not throw; it increases the returned error. Throws Error::StsNotImplemented in a build without Ceres, as the other
+forms do.
 */
 CV_EXPORTS_W double calibrateGlass(InputArrayOfArrays objectPoints, InputArrayOfArrays imagePointsDirect,
         InputArrayOfArrays imagePointsRefracted, InputArray cameraMatrix, InputArray distCoeffs,
