@@ -105,22 +105,28 @@ Matx32d tangentBasis(const Vec3d& n)
     return Matx32d(b1[0], b2[0], b1[1], b2[1], b1[2], b2[2]);
 }
 
-//! A pair's error, its derivative by the two tangent coordinates, and the covariance of that for unit pixel noise.
+//! A pair's error and its derivative by the two tangent coordinates.
 struct PairError
 {
     PairError(const Pair& pair, const Vec3d& n, const Matx32d& basis)
     {
         const Vec3d Sn = pair.S*n;
         const double s2 = n.dot(Sn), s = std::sqrt(s2);
-        const Vec2d along = basis.t()*Sn;
         e = n.dot(pair.a)/s;
         J = basis.t()*(pair.a/s - (e/s2)*Sn);
-        N = (1/s2)*(basis.t()*pair.S*basis - (1/s2)*(along*along.t()));
     }
     double e;
     Vec2d J;
-    Matx22d N;
 };
+
+//! Covariance of a pair's derivative for unit pixel noise, given its error.
+Matx22d derivativeNoise(const Pair& pair, const Vec3d& n, const Matx32d& basis)
+{
+    const Vec3d Sn = pair.S*n;
+    const double s2 = n.dot(Sn);
+    const Vec2d along = basis.t()*Sn;
+    return (1/s2)*(basis.t()*pair.S*basis - (1/s2)*(along*along.t()));
+}
 
 struct NormalEquations
 {
@@ -192,7 +198,7 @@ void weigh(std::vector<Pair>& pairs, const Vec3d& n, const Matx32d& basis, doubl
     {
         const PairError error(pair, n, basis);
         squares.push_back(error.J.dot(error.J));
-        noise.push_back(variance*trace(error.N));
+        noise.push_back(variance*trace(derivativeNoise(pair, n, basis)));
     }
     const double usual = median(squares);
     for (size_t i = 0; i < pairs.size(); i++)
@@ -209,7 +215,7 @@ Matx22d tangentCovariance(const std::vector<Pair>& pairs, const Vec3d& n, const 
     for (const Pair& pair : pairs)
     {
         const PairError error(pair, n, basis);
-        information += pair.weight*(error.J*error.J.t() - variance*error.N);
+        information += pair.weight*(error.J*error.J.t() - variance*derivativeNoise(pair, n, basis));
         score += pair.weight*pair.weight*(error.J*error.J.t());
     }
     Vec2d values;
@@ -217,7 +223,7 @@ Matx22d tangentCovariance(const std::vector<Pair>& pairs, const Vec3d& n, const 
     const Vec2d weakest(vectors.row(1).val);
     double squares = 0;
     for (const Pair& pair : pairs)
-        squares += std::pow(pair.weight*variance*weakest.dot(PairError(pair, n, basis).N*weakest), 2);
+        squares += std::pow(pair.weight*variance*weakest.dot(derivativeNoise(pair, n, basis)*weakest), 2);
     if (values[1] <= CLEAR*std::sqrt(2*squares))
         return Matx22d::zeros();
     const Matx22d inverse = information.inv(DECOMP_SVD);
