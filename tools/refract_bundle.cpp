@@ -5,6 +5,7 @@
 #include "bundle/matches.hpp"
 #include "bundle/bundle_findings.hpp"
 #include "bundle/exchanged_cameras.hpp"
+#include "bundle/moments.hpp"
 #include "calibrate/units.hpp"
 #include "colmap/survey_output.hpp"
 #include "console/cli.hpp"
@@ -232,17 +233,19 @@ double knownNoise(const Options& o, const Calibration& file, const Matches& matc
     return o.pixelSigma > 0. ? o.pixelSigma : !matches.stds.empty() ? matches.usualStd() : file.sigma;
 }
 
-//! What is to be thought of it, and why it is not as the start says: an exchange comes before what it leads to.
+//! What is to be thought of it, and why it is not as the start says: what the images are comes before what that leads to.
 BundleFindings judged(const Options& o, const Calibration& file, const Matches& matches, const GivenLengths& lengths,
                       const BundleStart& start, const BundleAdjustment& adjustment)
 {
     const double knownSigma = knownNoise(o, file, matches);
     const auto adjust = [&](const BundleStart& from) { return adjustBundle(from, matches, lengths, o.robust); };
     BundleFindings findings = findingsOf(start, lengths, adjustment, adjust, knownSigma, o.maxRms);
-    const std::string exchange = findings.contradictions.empty() ? "" : exchangedCameras(start, matches, lengths, o.robust, knownSigma);
-    if (!exchange.empty())
+    std::string mistake = lateCamera(start, matches, lengths, o.robust, adjustment.fit.sigma, knownSigma);
+    if (mistake.empty() && !findings.contradictions.empty())
+        mistake = exchangedCameras(start, matches, lengths, o.robust, knownSigma);
+    if (!mistake.empty())
     {
-        findings.contradictions = {exchange};
+        findings.contradictions = {mistake};
         return findings;
     }
     checkPlaces(start, adjust, findings);

@@ -143,6 +143,29 @@ TEST_CASE("refract_bundle names the camera whose pixels are of other moments, be
     }
 }
 
+TEST_CASE("refract_bundle names the camera whose pixels are one moment late, which a fit nearly hides", "[tools][bundle]")
+{
+    for (int cameras : {2, 3})
+    {
+        Wand wand(40 + cameras, cameras);
+        wand.sweep(150);
+        const TemporaryFolder f;
+        wand.write(f);
+        const ToolResult right = bundle(f);
+        CAPTURE(scenes::seed(), cameras, right.out, right.err);
+        CHECK(right.code == 0);
+        CHECK_FALSE(mentions(right.err, "too far"));
+        std::vector<Point2d>& pixels = wand.pixels[cameras - 1];
+        std::rotate(pixels.begin(), pixels.end() - 2, pixels.end());
+        wand.write(f);
+        const ToolResult late = bundle(f);
+        CAPTURE(late.out, late.err);
+        CHECK(late.code != 0);
+        CHECK((mentions(late.err, format("the pixels of camera %d stand 1 image(s) too far down", cameras))
+               || (cameras == 2 && mentions(late.err, "the pixels of camera 1 stand 1 image(s) too far up"))));
+    }
+}
+
 TEST_CASE("refract_measure finds the points that refract_bundle wrote", "[tools][bundle]")
 {
     Wand wand(9, 3, 60);

@@ -163,6 +163,27 @@ struct Wand
             points.push_back(Point3d(middle + length/2*normalize(along)));
             points.push_back(Point3d(middle - length/2*normalize(along)));
         }
+        see();
+    }
+
+    //! Slowly, as a hand does: a few pixels from one moment to the next.
+    void sweep(int moments)
+    {
+        const auto sines = [&](double size) {
+            const double first = random.uniform(0, 2*CV_PI), second = random.uniform(0, 2*CV_PI);
+            return [=](int moment) { return size*(0.6*std::sin(0.05*moment + first) + 0.4*std::sin(0.085*moment + second)); }; };
+        const auto x = sines(100), y = sines(80), z = sines(90), a = sines(1.5), b = sines(1.5), c = sines(1.5);
+        points.clear();
+        pixels.clear();
+        for (int moment = 0; moment < moments; moment++)
+            for (int end : { 1, -1 })
+                points.push_back(Point3d(Vec3d(x(moment), y(moment), 700 + z(moment))
+                                         + end*length/2*normalize(Vec3d(a(moment), b(moment), c(moment)))));
+        see();
+    }
+
+    void see()
+    {
         const double NaN = std::numeric_limits<double>::quiet_NaN();
         for (size_t c = 0; c < truth.cameras.size(); c++)
         {

@@ -10,14 +10,6 @@
 
 namespace tools {
 
-/** How far pixels are from the points that their rays give with the start; px, of the middling point that this camera saw. Infinite: too
-few. */
-double missOf(const BundleStart& start, const RigPixels& pixels, int camera);
-
-/** Throws Failure if the images of one camera are of later or earlier moments than those of the others: if rays meet far better after
-some rows of the table. An adjustment to such matches creeps. Tables without images have no moments. */
-void requireSameMoments(const BundleStart& start, const Matches& matches);
-
 //! How far a camera's window or place is from the start, and how well it is known.
 struct Correction
 {

@@ -3,6 +3,7 @@
 
 #include "bundle/exchanged_cameras.hpp"
 #include "bundle/bundle_findings.hpp"
+#include "bundle/moments.hpp"
 #include "console/failure.hpp"
 #include <algorithm>
 
@@ -12,7 +13,7 @@ namespace tools {
 
 namespace {
 
-const int ENOUGH_POINTS = 200, ENOUGH_ITERATIONS = 100;     // a right start needs no more
+const int ENOUGH_ITERATIONS = 100;                          // a right start needs no more
 const int MOST_TRIED = 6;                                   // of four cameras all
 
 struct Exchange
@@ -21,23 +22,6 @@ struct Exchange
     Matches matches;
     double miss;                    //!< of rays, with the start
 };
-
-//! Some of the points, with those that lengths lead to; the others are seen by no camera.
-Matches thinned(const Matches& matches, const GivenLengths& lengths)
-{
-    const size_t count = matches.names.size(), step = std::max<size_t>(1, count/ENOUGH_POINTS);
-    std::vector<uchar> kept(count, 0);
-    for (size_t i = 0; i < count; i += step)
-        kept[i] = 1;
-    for (size_t i = 0; i < lengths.list.size(); i += step)
-        kept[lengths.list[i].a] = kept[lengths.list[i].b] = 1;
-    Matches some = matches;
-    for (std::vector<Point2d>& pixels : some.pixels)
-        for (size_t i = 0; i < count; i++)
-            if (!kept[i])
-                pixels[i] = Point2d(NAN, NAN);
-    return some;
-}
 
 Exchange exchangeOf(const BundleStart& start, const Matches& given, int a, int b)
 {

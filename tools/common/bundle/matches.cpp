@@ -198,6 +198,23 @@ std::vector<std::pair<int, int>> pairsOf(const CsvTable& table, const CsvTable::
 
 } // namespace
 
+Matches thinned(const Matches& matches, const GivenLengths& lengths)
+{
+    const size_t ENOUGH_POINTS = 200;
+    const size_t count = matches.names.size(), step = std::max<size_t>(1, count/ENOUGH_POINTS);
+    std::vector<uchar> kept(count, 0);
+    for (size_t i = 0; i < count; i += step)
+        kept[i] = 1;
+    for (size_t i = 0; i < lengths.list.size(); i += step)
+        kept[lengths.list[i].a] = kept[lengths.list[i].b] = 1;
+    Matches some = matches;
+    for (std::vector<cv::Point2d>& pixels : some.pixels)
+        for (size_t i = 0; i < count; i++)
+            if (!kept[i])
+                pixels[i] = cv::Point2d(NAN, NAN);
+    return some;
+}
+
 GivenLengths readLengths(const std::string& path, const std::string& matchesPath, const Matches& matches)
 {
     const std::string what = "a table of known lengths";

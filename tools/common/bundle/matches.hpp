@@ -56,6 +56,9 @@ struct GivenLengths
     std::vector<cv::Vec4d> rows() const;
 };
 
+//! Some of the points, with those that lengths lead to, to try what fits; the others are seen by no camera.
+Matches thinned(const Matches& matches, const GivenLengths& lengths);
+
 //! lengths.csv: [image,]id1,id2,length,std; without an image a row is of every image that shows both points.
 GivenLengths readLengths(const std::string& path, const std::string& matchesPath, const Matches& matches);
 

@@ -1,0 +1,27 @@
+// This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
+// SPDX-License-Identifier: Apache-2.0
+
+#ifndef REFRACT_TOOLS_MOMENTS_HPP
+#define REFRACT_TOOLS_MOMENTS_HPP
+
+#include "bundle/bundle_adjustment.hpp"
+
+/* Whether the images of all cameras in one row are of one moment. */
+namespace tools {
+
+/** How far pixels are from the points that their rays give with the start; px, of the middling point that this camera saw. Infinite: too
+few. */
+double missOf(const BundleStart& start, const RigPixels& pixels, int camera);
+
+/** Throws Failure if the images of one camera are of later or earlier moments than those of the others: if rays meet far better after
+some rows of the table. An adjustment to such matches creeps. Tables without images have no moments. */
+void requireSameMoments(const BundleStart& start, const Matches& matches);
+
+/** The same after a fit to the matches, which bends a rig until it hides a good part of it: whether they fit far better after some rows.
+@param sigma of the fit @param knownSigma as of findingsOf @return a sentence; empty: no camera is late */
+std::string lateCamera(const BundleStart& start, const Matches& matches, const GivenLengths& lengths, bool robust, double sigma,
+                       double knownSigma);
+
+} // namespace tools
+
+#endif // REFRACT_TOOLS_MOMENTS_HPP
