@@ -213,7 +213,10 @@ bool Minimization::solve(TrustRegion& region)
         state.push_back(block.data());
     cost_->setState(state);
     if (!cost_->linearize())
+    {
+        cost_.reset();              // it has no information that could be asked for
         return false;
+    }
     if (state.empty())              // only inner blocks are free
     {
         region.outcome = ceres::CONVERGENCE;
