@@ -201,6 +201,16 @@ struct Ends
     }
 };
 
+//! A bundle of two cameras or more, and how it ends.
+void fitRig(const RigTruth& rig, const BundleScene& scene, Random& random, double crude, Ends& ends)
+{
+    TrioCall call(rig, scene, random, crude);
+    int told;
+    call.run(GLASS_FREE_EXTRINSICS);
+    const double worst = call.worstPoint(scene, told);
+    ends.add(call.overStated(rig), worst, told);
+}
+
 //! Two cameras, a wand, every second pixel half.
 void fitHalfWand(int number, Ends& ends)
 {
@@ -208,11 +218,7 @@ void fitHalfWand(int number, Ends& ends)
     const RigTruth rig = makeRig(2, { 0, 1 }, 1.33, 0.25);
     BundleScene scene = makeWandScene(rig, 40, random, 0.1);
     forgetSome(scene, random, 0.5);
-    TrioCall call(rig, scene, random, 1);
-    int told;
-    call.run(GLASS_FREE_EXTRINSICS);
-    const double worst = call.worstPoint(scene, told);
-    ends.add(call.overStated(rig), worst, told);
+    fitRig(rig, scene, random, 1, ends);
 }
 
 //! Three cameras of which a few see each point, many of them half.
@@ -224,11 +230,7 @@ void fitHalfScene(int number, Ends& ends)
     for (int i = 2; i < 12; i += 2)
         scene.lengths.push_back({ (double)i, i + 1., norm(scene.points[i] - scene.points[i + 1]) + random.normal(WAND_SIGMA), WAND_SIGMA });
     forgetSome(scene, random, 0.7);
-    TrioCall call(rig, scene, random, 0.3);
-    int told;
-    call.run(GLASS_FREE_EXTRINSICS);
-    const double worst = call.worstPoint(scene, told);
-    ends.add(call.overStated(rig), worst, told);
+    fitRig(rig, scene, random, 0.3, ends);
 }
 
 //! One camera that turns about its centre, near a pane.
