@@ -10,6 +10,7 @@ at which a length L is seen under its angle, L = D |u_a - u_b|, and the other vi
 #include "adjust/ray_midpoints.hpp"
 #include "adjust/view_motion.hpp"
 #include "math/robust_scale.hpp"
+#include "pose/generalized_p3p.hpp"
 #include "pose/poses.hpp"
 #include <map>
 
@@ -19,35 +20,15 @@ namespace {
 
 const double NaN = std::numeric_limits<double>::quiet_NaN();
 
-//! The rays of an image's points, in the frame of its camera; direction NaN where there is none.
-struct ImageRays
-{
-    std::vector<Vec3d> origin, direction;
-};
+//! Of an image's points, in the frame of its camera; NaN where there is none.
+typedef std::vector<SceneRay> ImageRays;
 
 ImageRays raysOf(const Camera& camera, const ImagePoints& points)
 {
-    ImageRays all;
-    const Vec3d normal = camera.layers().normal();
-    for (size_t begin = 0; begin < points.pixel.size(); begin += BLOCK)
-    {
-        const int n = (int)std::min((size_t)BLOCK, points.pixel.size() - begin);
-        double u[BLOCK], v[BLOCK];
-        uchar status[BLOCK];
-        Rays rays;
-        for (int k = 0; k < n; k++)
-        {
-            const Point2d& pixel = points.pixel[begin + k];
-            u[k] = pixel.x; v[k] = pixel.y;
-            status[k] = isWhole(pixel) ? REFRACT_OK : REFRACT_NOT_FINITE;
-        }
-        camera.unproject(n, u, v, rays, status);
-        for (int k = 0; k < n; k++)
-        {
-            all.origin.push_back(status[k] == REFRACT_OK ? rays.origin(k, normal) : Vec3d::all(NaN));
-            all.direction.push_back(status[k] == REFRACT_OK ? rays.direction(k) : Vec3d::all(NaN));
-        }
-    }
+    ImageRays all(points.pixel.size(), SceneRay{ Vec3d::all(NaN), Vec3d::all(NaN) });
+    const PointRays found(camera, points);
+    for (size_t k = 0; k < found.ray.size(); k++)
+        all[found.point[k]] = found.ray[k];
     return all;
 }
 
@@ -70,9 +51,9 @@ void addDistances(const Problem& problem, const std::vector<ImageRays>& rays, in
     {
         const int point = problem.images()[o.image].points.index[o.row];
         if (point == points[length.a])
-            toFirst[o.image] = rays[o.image].direction[o.row];
+            toFirst[o.image] = rays[o.image][o.row].direction;
         else if (point == points[length.b])
-            toSecond[o.image] = rays[o.image].direction[o.row];
+            toSecond[o.image] = rays[o.image][o.row].direction;
     }
     for (const std::pair<const int, Vec3d>& first : toFirst)
         if (toSecond.count(first.first))
@@ -114,8 +95,8 @@ public:
             for (size_t row = 0; row < image.points.index.size(); row++)
             {
                 Vec3d& point = points_[image.points.index[row]];
-                if (std::isnan(point[0]) && !std::isnan(rays_[i].direction[row][0]))
-                    point = place.inverse(rays_[i].origin[row] + distance_*rays_[i].direction[row]);
+                if (std::isnan(point[0]) && !std::isnan(rays_[i][row].direction[0]))
+                    point = place.inverse(rays_[i][row].origin + distance_*rays_[i][row].direction);
             }
         }
     }
@@ -197,9 +178,9 @@ bool areRaysParallel(const Problem& problem)
         const Image& image = problem.images()[i];
         const RigidTransform place = transformOf(rig.extrinsics[image.camera])*transformOf(problem.pose(image.view));
         for (size_t row = 0; row < image.points.index.size(); row++)
-            if (!std::isnan(rays[i].direction[row][0]))
+            if (!std::isnan(rays[i][row].direction[0]))
             {
-                sums[image.points.index[row]] += place.R.t()*rays[i].direction[row];
+                sums[image.points.index[row]] += place.R.t()*rays[i][row].direction;
                 counts[image.points.index[row]]++;
             }
     }
