@@ -49,7 +49,7 @@ TEST_CASE("Planes of rays tell the normal, whatever is in front and how far it i
                     CAPTURE(thickness, distance, flat, tilt, seed());
                     REQUIRE_FALSE(normals.empty());
                     largest = std::max(largest, angleBetween(normals[0], window.normal));
-                    CHECK(angleBetween(normals[0], window.normal) < 0.5);
+                    CHECK(angleBetween(normals[0], window.normal) < 0.02);
                 }
     printNumber("Normals by coplanarity, perfect data, largest error", largest, "degrees");
 }

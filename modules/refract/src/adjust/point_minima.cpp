@@ -87,13 +87,11 @@ std::vector<int> clustersOfSeveralMinima(const Problem& problem, const std::vect
 //! How far the first point of each of some clusters is from a camera that sees it.
 std::vector<double> distancesOf(const Problem& problem, const std::vector<int>& some)
 {
-    const Rig rig = problem.rig();
     std::vector<double> distances(problem.scene().clusters().size(), 0.);
     for (int i : some)
     {
         const Image& image = problem.images()[problem.observationsOf(i)[0].image];
-        const RigidTransform place = transformOf(rig.extrinsics[image.camera])*transformOf(problem.pose(image.view));
-        const Vec3d center = place.inverse(Vec3d())/problem.sceneScale();
+        const Vec3d center = problem.camFromScene(image).inverse(Vec3d())/problem.sceneScale();
         distances[i] = (problem.scene().clusters()[i].values.head<3>() - Vector3d(center[0], center[1], center[2])).norm();
     }
     return distances;

@@ -120,6 +120,13 @@ Pose Problem::pose(int view) const
     return pose;
 }
 
+RigidTransform Problem::camFromScene(const Image& image) const
+{
+    const RigidTransform cam1FromScene = transformOf(pose(image.view));
+    return image.camera == 0 ? cam1FromScene
+                             : transformOf(poseOf(valuesOf(ParameterBlock::EXTRINSICS, image.camera)))*cam1FromScene;
+}
+
 std::vector<Pose> Problem::poses() const
 {
     std::vector<Pose> all;

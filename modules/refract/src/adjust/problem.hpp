@@ -160,6 +160,7 @@ public:
     Pose pose(int view) const;
     std::vector<Pose> poses() const;        //!< of all views
     void setPose(int view, const Pose& pose);           //!< nothing if it is known exactly
+    RigidTransform camFromScene(const Image& image) const;     //!< or from the view's target
     //! The pose in the direct images of a target that has this pose in an image.
     Pose inDirectImages(const Image& image, const Pose& pose) const;
     //! Of SharedTargetErrors; -1: the problem has none.

@@ -42,14 +42,8 @@ struct RaySum
     }
 };
 
-//! Scene -> camera of an image.
-RigidTransform placeOf(const Problem& problem, const Rig& cameras, const Image& image)
-{
-    return transformOf(cameras.extrinsics[image.camera])*transformOf(problem.pose(image.view));
-}
-
 //! @param isUsed per point of the image; empty: all
-void addRays(const Camera& camera, const RigidTransform& place, const ImagePoints& points, const std::vector<uchar>& isUsed,
+void addRays(const Camera& camera, const RigidTransform& camFromScene, const ImagePoints& points, const std::vector<uchar>& isUsed,
              std::vector<RaySum>& sums)
 {
     const Vec3d normal = camera.layers().normal();
@@ -74,18 +68,18 @@ void addRays(const Camera& camera, const RigidTransform& place, const ImagePoint
             if (status[k] != REFRACT_OK || (!isUsed.empty() && !isUsed[begin + k]))
                 continue;
             RaySum& sum = sums[points.index[begin + k]];
-            const Vec3d origin = place.inverse(rays.origin(k, normal));
+            const Vec3d origin = camFromScene.inverse(rays.origin(k, normal));
             if (isWhole(points.pixel[begin + k]))
-                sum.addRay(origin, place.R.t()*rays.direction(k));
+                sum.addRay(origin, camFromScene.R.t()*rays.direction(k));
             else
-                sum.addSheet(origin, place.R.t()*rays.normalOf(k));
+                sum.addSheet(origin, camFromScene.R.t()*rays.normalOf(k));
         }
     }
 }
 
-bool hasImage(const Camera& camera, const RigidTransform& place, const Point3d& point)
+bool hasImage(const Camera& camera, const RigidTransform& camFromScene, const Point3d& point)
 {
-    const Vec3d X = place.apply(Vec3d(point));
+    const Vec3d X = camFromScene.apply(Vec3d(point));
     double u, v;
     uchar status = REFRACT_OK;
     camera.project(1, &X[0], &X[1], &X[2], nullptr, &u, &v, &status);
@@ -98,12 +92,10 @@ std::vector<Point3d> startPoints(const Problem& problem, const std::vector<Point
 {
     const Rig rig = problem.rig();
     std::vector<RaySum> sums(given.size());
-    std::vector<RigidTransform> places;
     std::vector<int> seen(given.size(), 0);         // coordinates
     for (const Image& image : problem.images())
     {
-        places.push_back(placeOf(problem, rig, image));
-        addRays(rig.cameras[image.camera], places.back(), image.points, std::vector<uchar>(), sums);
+        addRays(rig.cameras[image.camera], problem.camFromScene(image), image.points, std::vector<uchar>(), sums);
         for (size_t k = 0; k < image.points.index.size(); k++)
             seen[image.points.index[k]] += image.points.rowsOf(k);
     }
@@ -113,12 +105,12 @@ std::vector<Point3d> startPoints(const Problem& problem, const std::vector<Point
             points[i] = Point3d(NaN, NaN, NaN);
         else if (!std::isfinite(given[i].x))
             points[i] = Point3d(sums[i].point()/problem.sceneScale());
-    for (size_t k = 0; k < places.size(); k++)
+    for (const Image& image : problem.images())
     {
-        const Image& image = problem.images()[k];
+        const RigidTransform camFromScene = problem.camFromScene(image);
         for (int index : image.points.index)
-            if (std::isfinite(points[index].x) && !hasImage(rig.cameras[image.camera], places[k],
-                                                              points[index]*problem.sceneScale()))
+            if (std::isfinite(points[index].x) &&
+                !hasImage(rig.cameras[image.camera], camFromScene, points[index]*problem.sceneScale()))
                 points[index] = Point3d(NaN, NaN, NaN);
     }
     return points;
@@ -132,7 +124,7 @@ std::vector<Point3d> rayMidpoints(const Problem& problem, int pointCount, const 
     {
         const Image& image = problem.images()[i];
         if (std::any_of(isUsed[i].begin(), isUsed[i].end(), [](uchar used) { return used != 0; }))
-            addRays(rig.cameras[image.camera], placeOf(problem, rig, image), image.points, isUsed[i], sums);
+            addRays(rig.cameras[image.camera], problem.camFromScene(image), image.points, isUsed[i], sums);
     }
     std::vector<Point3d> points;
     for (const RaySum& sum : sums)

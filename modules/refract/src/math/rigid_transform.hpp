@@ -18,6 +18,7 @@ struct RigidTransform
     Vec3d apply(const Vec3d& x) const { return R*x + t; }
     //! R^T (x - t)
     Vec3d inverse(const Vec3d& x) const { return R.t()*(x - t); }
+    RigidTransform inverse() const { return { R.t(), -(R.t()*t) }; }
     //! First the other, then this.
     RigidTransform operator*(const RigidTransform& other) const { return { R*other.R, R*other.t + t }; }
 };

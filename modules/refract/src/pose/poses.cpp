@@ -237,8 +237,7 @@ double refinePose(const Camera& camera, const ImagePoints& points, Pose& pose, i
 
 Pose inCamera1(const Pose& inCamera, const Pose& extrinsics)
 {
-    const RigidTransform object = transformOf(inCamera), camera = transformOf(extrinsics);
-    return poseOf({ camera.R.t()*object.R, camera.inverse(object.t) });
+    return poseOf(transformOf(extrinsics).inverse()*transformOf(inCamera));
 }
 
 static bool isSame(const Pose& a, const Pose& b)

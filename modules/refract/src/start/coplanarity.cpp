@@ -18,10 +18,10 @@ namespace cv { namespace refract {
 
 namespace {
 
-//! The sum of (v x P)(v x P)^T of a view's points, P homogeneous in its principal axes, of unit size.
-struct ViewMoments
+//! The rows v x P of a view's points, P homogeneous in its principal axes, of unit size.
+struct ViewRows
 {
-    Eigen::MatrixXd sum;
+    Eigen::MatrixXd R;      //!< R^T R is the sum of the rows' squares
     int dimension;          //!< of P
     int freedom;            //!< behind a normal that is known
 };
@@ -46,7 +46,7 @@ std::vector<Vec3d> principalAxes(const std::vector<Point3d>& points, Vec3d& mean
     return axes;
 }
 
-bool findMoments(const Camera& camera, const std::vector<Point3d>& object, const std::vector<Point2d>& pixels, ViewMoments& moments)
+bool findRows(const Camera& camera, const std::vector<Point3d>& object, const std::vector<Point2d>& pixels, ViewRows& found)
 {
     std::vector<Point3d> seen;
     std::vector<Vec3d> rays;
@@ -66,38 +66,36 @@ bool findMoments(const Camera& camera, const std::vector<Point3d>& object, const
     Vec3d mean;
     double size;
     const std::vector<Vec3d> axes = principalAxes(seen, mean, size);
-    moments.dimension = (int)axes.size() + 1;
-    if (moments.dimension < 3 || (int)seen.size() < 2*moments.dimension)
+    found.dimension = (int)axes.size() + 1;
+    if (found.dimension < 3 || (int)seen.size() < 2*found.dimension)
         return false;
-    moments.freedom = (int)seen.size() - (2*moments.dimension - 1);
-    moments.sum.setZero(3*moments.dimension, 3*moments.dimension);
-    Eigen::VectorXd row(3*moments.dimension);
+    found.freedom = (int)seen.size() - (2*found.dimension - 1);
+    Eigen::MatrixXd rows(seen.size(), 3*found.dimension);
     for (size_t i = 0; i < seen.size(); i++)
-    {
-        for (int k = 0; k < moments.dimension; k++)
+        for (int k = 0; k < found.dimension; k++)
         {
             const double p = k < (int)axes.size() ? axes[k].dot(Vec3d(seen[i]) - mean)/size : 1;
             for (int c = 0; c < 3; c++)
-                row[c*moments.dimension + k] = rays[i][c]*p;
+                rows(i, c*found.dimension + k) = rays[i][c]*p;
         }
-        addGram(row.transpose(), 1, moments.sum);
-    }
-    moments.sum = moments.sum.selfadjointView<Eigen::Lower>();
+    found.R = QR(rows).R();
     return true;
 }
 
-double squaresAt(const Vec3d& normal, const std::vector<ViewMoments>& views)
+//! The eigenvalue itself would be no smaller than what rounding leaves of the largest; the length that its vector leaves is.
+double squaresAt(const Vec3d& normal, const std::vector<ViewRows>& views)
 {
     const Matx33d across = turnToZ(normal);     // its first two rows
     double sum = 0;
-    for (const ViewMoments& view : views)
+    for (const ViewRows& view : views)
     {
         const int n = view.dimension;
         Eigen::MatrixXd B = Eigen::MatrixXd::Zero(3*n, 2*n);
         for (int c = 0; c < 3; c++)
             for (int i = 0; i < 2; i++)
                 B.block(c*n, i*n, n, n).diagonal().setConstant(across(i, c));
-        sum += std::max(SymmetricEigen(propagated(view.sum, B.transpose())).values[0], 0.);
+        const Eigen::MatrixXd A = product(view.R, B);
+        sum += timesVector(A, SymmetricEigen(transposeTimes(A, A)).vectors.col(0)).squaredNorm();
     }
     return sum;
 }
@@ -110,7 +108,7 @@ struct Candidate
 };
 
 //! Downhill, until steps are smaller than so many radians.
-Candidate descend(Candidate at, double step, double smallest, const std::vector<ViewMoments>& views)
+Candidate descend(Candidate at, double step, double smallest, const std::vector<ViewRows>& views)
 {
     while (step > smallest)
     {
@@ -136,7 +134,7 @@ Vec3d normalAt(double tilt, double azimuth)
 }
 
 //! Of all normals of a tilt the best. @param step radians between those that are tried first
-Candidate bestOfTilt(double tilt, double step, const std::vector<ViewMoments>& views)
+Candidate bestOfTilt(double tilt, double step, const std::vector<ViewRows>& views)
 {
     const int count = cvCeil(2*CV_PI*std::sin(tilt)/step), HALVINGS = 4;
     double azimuth = 0, apart = 2*CV_PI/count;
@@ -165,26 +163,26 @@ Candidate bestOfTilt(double tilt, double step, const std::vector<ViewMoments>& v
 
 std::vector<Vec3d> normalsByCoplanarity(const Camera& camera, const RigViews& views)
 {
-    const double STEP = 0.1, TILTS = 0.15, STEEPEST = 1.1, SMALLEST = 1e-4;     // radians
+    const double STEP = 0.1, TILTS = 0.15, STEEPEST = 1.1, SMALLEST = 1e-6;     // radians
     const size_t MOST = 3;
-    std::vector<ViewMoments> moments;
+    std::vector<ViewRows> rows;
     int freedom = -2;
     for (int view = 0; view < views.count(); view++)
     {
-        ViewMoments of;
-        if (!findMoments(camera, views.object[view], views.cameras[0].refracted[view], of))
+        ViewRows of;
+        if (!findRows(camera, views.object[view], views.cameras[0].refracted[view], of))
             continue;
-        moments.push_back(of);
+        rows.push_back(of);
         freedom += of.freedom;
     }
     std::vector<Vec3d> normals;
-    if (moments.empty())
+    if (rows.empty())
         return normals;
     std::vector<Candidate> candidates;
     for (double tilt = TILTS; tilt < STEEPEST; tilt += TILTS)
-        candidates.push_back(bestOfTilt(tilt, STEP, moments));
+        candidates.push_back(bestOfTilt(tilt, STEP, rows));
     std::sort(candidates.begin(), candidates.end());
-    const Candidate best = descend(candidates[0], STEP/2, SMALLEST, moments);
+    const Candidate best = descend(candidates[0], STEP/2, SMALLEST, rows);
     normals.push_back(best.normal);
     // Where rays are bent by little, the azimuth shows and the tilt hardly.
     for (const Candidate& other : candidates)

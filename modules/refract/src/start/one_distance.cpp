@@ -82,7 +82,7 @@ class Placing
 public:
     explicit Placing(Problem& problem)
         : problem_(problem), rig_(problem.rig()), rays_(raysOf(problem)), distance_(distanceOf(problem, rays_)*problem.sceneScale()),
-          points_(problem.scene().pointCount(), Vec3d::all(NaN)), poses_(problem.poses()) {}
+          points_(problem.scene().pointCount(), Vec3d::all(NaN)) {}
     bool isPossible() const { return std::isfinite(distance_); }
 
     //! On the rays of this view, those that are not yet.
@@ -91,12 +91,12 @@ public:
         for (int i : problem_.imagesOf(view))
         {
             const Image& image = problem_.images()[i];
-            const RigidTransform place = transformOf(rig_.extrinsics[image.camera])*transformOf(poses_[view]);
+            const RigidTransform camFromScene = problem_.camFromScene(image);
             for (size_t row = 0; row < image.points.index.size(); row++)
             {
                 Vec3d& point = points_[image.points.index[row]];
                 if (std::isnan(point[0]) && !std::isnan(rays_[i][row].direction[0]))
-                    point = place.inverse(rays_[i][row].origin + distance_*rays_[i][row].direction);
+                    point = camFromScene.inverse(rays_[i][row].origin + distance_*rays_[i][row].direction);
             }
         }
     }
@@ -106,29 +106,26 @@ public:
     {
         const int ENOUGH = 4;
         ImagePoints most;
-        int camera = -1;
+        const Image* best = nullptr;
         for (int i : problem_.imagesOf(view))
         {
             const ImagePoints placed = placedIn(problem_.images()[i]);
             if (placed.pixel.size() > std::max(most.pixel.size(), (size_t)ENOUGH - 1))
             {
                 most = placed;
-                camera = problem_.images()[i].camera;
+                best = &problem_.images()[i];
             }
         }
-        if (camera < 0)
+        if (!best)
             return;
-        Pose pose = poseOf(transformOf(rig_.extrinsics[camera])*transformOf(poses_[view]));
+        Pose pose = poseOf(problem_.camFromScene(*best));
         pose.found = true;
-        if (!std::isnan(refinePose(rig_.cameras[camera], most, pose)))
-            poses_[view] = inCamera1(pose, rig_.extrinsics[camera]);
+        if (!std::isnan(refinePose(rig_.cameras[best->camera], most, pose)))
+            problem_.setPose(view, inCamera1(pose, rig_.extrinsics[best->camera]));
     }
 
     void finish()
     {
-        for (int view = 0; view < problem_.viewCount(); view++)
-            if (problem_.isAdjusted(view))
-                problem_.setPose(view, poses_[view]);
         std::vector<Point3d> points;
         for (const Vec3d& point : points_)
             points.push_back(Point3d(point/problem_.sceneScale()));
@@ -156,7 +153,6 @@ private:
     const std::vector<ImageRays> rays_;
     const double distance_;
     std::vector<Vec3d> points_;     //!< frame of the scene
-    std::vector<Pose> poses_;
 };
 
 } // namespace
@@ -169,18 +165,17 @@ bool areRaysParallel(const Problem& problem)
         isAnyFree = isAnyFree || problem.isAdjusted(view);
     if (!isAnyFree)
         return false;
-    const Rig rig = problem.rig();
     const std::vector<ImageRays> rays = raysOf(problem);
     std::vector<Vec3d> sums(problem.scene().pointCount());
     std::vector<int> counts(sums.size(), 0);
     for (size_t i = 0; i < rays.size(); i++)
     {
         const Image& image = problem.images()[i];
-        const RigidTransform place = transformOf(rig.extrinsics[image.camera])*transformOf(problem.pose(image.view));
+        const RigidTransform camFromScene = problem.camFromScene(image);
         for (size_t row = 0; row < image.points.index.size(); row++)
             if (!std::isnan(rays[i][row].direction[0]))
             {
-                sums[image.points.index[row]] += place.R.t()*rays[i][row].direction;
+                sums[image.points.index[row]] += camFromScene.R.t()*rays[i][row].direction;
                 counts[image.points.index[row]]++;
             }
     }

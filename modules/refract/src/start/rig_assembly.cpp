@@ -12,28 +12,8 @@ namespace cv { namespace refract {
 
 namespace {
 
-//! first -> second of a target's poses.
-Pose between(const Pose& first, const Pose& second)
-{
-    const TransformWithDerivatives a(first), b(second);
-    const Matx33d R = b.rotation.R*a.rotation.R.t();
-    Pose pose;
-    pose.rvec = rotationVector(R);
-    pose.tvec = b.T - R*a.T;
-    pose.found = true;
-    return pose;
-}
-
-//! The pose in the frame of a camera at these extrinsics.
-Pose inCamera(const Pose& inCamera1, const Pose& extrinsics)
-{
-    const TransformWithDerivatives E(extrinsics), X(inCamera1);
-    Pose pose;
-    pose.rvec = rotationVector(E.rotation.R*X.rotation.R);
-    pose.tvec = E.apply(X.T);
-    pose.found = inCamera1.found;
-    return pose;
-}
+//! Camera a -> camera b, by a target's poses in both.
+Pose camBFromCamA(const Pose& inA, const Pose& inB) { return poseOf(transformOf(inB)*transformOf(inA).inverse()); }
 
 //! Sum of squared pixels of all views that the camera saw and that have a place, with the camera at these extrinsics.
 double costAt(const CameraHypothesis& hypothesis, const Pose& extrinsics, const std::vector<Pose>& places, const CameraViews& seen,
@@ -45,13 +25,13 @@ double costAt(const CameraHypothesis& hypothesis, const Pose& extrinsics, const 
     {
         if (!places[view].found || !hypothesis.poses[view].found)
             continue;
-        const TransformWithDerivatives toCamera(inCamera(places[view], extrinsics));
+        const RigidTransform camFromTarget = transformOf(extrinsics)*transformOf(places[view]);
         for (size_t i = 0; i < seen.refracted[view].size(); i++)       // none: a direct image alone
         {
             const Point2d& pixel = seen.refracted[view][i];
             if (!isWhole(pixel))
                 continue;
-            const Vec3d X = toCamera.apply(Vec3d(object[view][i]));
+            const Vec3d X = camFromTarget.apply(Vec3d(object[view][i]));
             double u = 0, v = 0;
             uchar status = REFRACT_OK;
             hypothesis.camera.project(1, &X[0], &X[1], &X[2], nullptr, &u, &v, &status);
@@ -71,7 +51,7 @@ Pose placeOf(const CameraHypothesis& hypothesis, const std::vector<Pose>& places
     {
         if (!places[view].found || !hypothesis.poses[view].found)
             continue;
-        const Pose extrinsics = between(places[view], hypothesis.poses[view]);
+        const Pose extrinsics = camBFromCamA(places[view], hypothesis.poses[view]);
         const double cost = costAt(hypothesis, extrinsics, places, seen, object);
         if (cost < least)
         {
@@ -160,10 +140,10 @@ void placeCameras(const std::vector<CameraHypothesis>& cameras, const RigViews& 
     start.poses = placement.poses;
     for (Pose& pose : start.poses)
         if (root != 0 && pose.found)
-            pose = inCamera(pose, toCamera1);
+            pose = poseOf(transformOf(toCamera1)*transformOf(pose));
     for (size_t c = 1; c < cameras.size(); c++)
         if (placement.isPlaced[c])
-            start.rig.extrinsics[c] = root == 0 ? placement.places[c] : between(toCamera1, placement.places[c]);
+            start.rig.extrinsics[c] = root == 0 ? placement.places[c] : camBFromCamA(toCamera1, placement.places[c]);
 }
 
 } // namespace
@@ -175,8 +155,13 @@ std::vector<CameraHypothesis> camerasOf(const Minimum& minimum, const std::vecto
     {
         cameras[c].camera = minimum.rig.cameras[c];
         for (size_t view = 0; view < cameras[c].poses.size(); view++)
-            if (cameras[c].poses[view].found)
-                cameras[c].poses[view] = inCamera(minimum.poses[view], minimum.rig.extrinsics[c]);
+        {
+            Pose& pose = cameras[c].poses[view];
+            if (!pose.found)
+                continue;
+            pose = poseOf(transformOf(minimum.rig.extrinsics[c])*transformOf(minimum.poses[view]));
+            pose.found = minimum.poses[view].found;
+        }
     }
     return cameras;
 }
