@@ -10,13 +10,14 @@
 
 namespace scenes {
 
-inline double refit(RigCall& call, int flags)
+//! @param priors of each camera, or empty
+inline cv::refract::FitStatistics refit(RigCall& call, int flags, const std::vector<cv::Mat>& priors = std::vector<cv::Mat>())
 {
     return cv::refract::fitGlassRig(call.object, call.direct, call.refracted, call.cameras, call.windows, call.Rs, call.Ts, call.rvecs,
                                     call.tvecs, call.deviations, call.covariance, call.perViewErrors, call.imageStatus, call.inliers,
                                     call.otherMinima, cv::noArray(), cv::noArray(), flags | cv::refract::FROM_EARLIER_FIT,
                                     call.poseCovariances,
-                                    cv::TermCriteria(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 1000, 1e-12), cv::noArray());
+                                    cv::TermCriteria(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 1000, 1e-12), priors);
 }
 
 } // namespace scenes

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // What is known of a camera beforehand comes into the joint fit with its covariance.
-#include "rig_scenes.hpp"
+#include "refit_call.hpp"
 
 using namespace cv;
 using namespace cv::refract;
@@ -87,6 +87,34 @@ TEST_CASE("Errors of a lens that is known so far are what is stated", "[known][s
               << std::endl;
     CHECK(ofLens == Approx(1).margin(0.3));
     CHECK(ofNormal == Approx(1).margin(0.3));
+}
+
+TEST_CASE("The noise that a fit tells is that of the pixels, however much priors are contradicted", "[known][prior]")
+{
+    const double SIGMA = 0.1, DEVIATION = 40;
+    const int TRIALS = 400, KNOWN = 4;          // fx, fy, cx, cy
+    double squares = 0, withoutPriors = 0;
+    CAPTURE(seed());
+    for (int trial = 0; trial < TRIALS; trial++)
+    {
+        Random random(3350 + trial);
+        const RigTruth truth = makeRig(1, { 0 }, 1.);
+        RigCall call(truth, makeRigScene(truth, ObjectViews(2, board(4, 3, 35)), random, SIGMA), true);
+        Mat lens = call.cameras[0]->lensParameters(), covariance = Mat::zeros(lens.rows, lens.rows, CV_64F);
+        for (int i = 0; i < KNOWN; i++)
+        {
+            lens.at<double>(i) += random.normal(DEVIATION);
+            covariance.at<double>(i, i) = DEVIATION*DEVIATION;
+        }
+        call.cameras[0]->setLensParameters(lens);
+        const FitStatistics fit = refit(call, 0, { covariance });
+        squares += std::pow(fit.sigma/SIGMA, 2)/TRIALS;
+        withoutPriors += std::pow(fit.rms/SIGMA, 2)*(2*call.object.size()*call.object[0].size())/fit.freedom/TRIALS;
+    }
+    std::cout << "[numbers] squared noise over the true one where priors are contradicted: " << squares
+              << "; as if they were met: " << withoutPriors << std::endl;
+    CHECK(squares == Approx(1).margin(0.03));
+    CHECK(withoutPriors < 0.97);        // else this tests nothing
 }
 
 TEST_CASE("A covariance of the wrong size or sign is refused by name", "[known]")

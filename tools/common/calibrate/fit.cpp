@@ -129,25 +129,6 @@ std::vector<Mat> covariancesOf(const RigModel& rig, int flags)
     return covariances;
 }
 
-//! How many numbers are known with a covariance, of each camera.
-int countPriors(const RigModel& rig, const std::vector<Mat>& covariances)
-{
-    int count = 0;
-    for (size_t c = 0; c < covariances.size(); c++)
-    {
-        const Mat covariance = covariances[c];
-        const int lens = rig.known[c].lens.rows;
-        const bool ownsWindow = rig.ownsWindow((int)c);
-        const ParameterColumns at = columnsOf(*rig.cameras[c]);
-        const auto isKnown = [&](int i) { return covariance.at<double>(i, i) > 0; };
-        for (int i = 0; i < covariance.rows && (i < lens || ownsWindow); i++)
-            count += isKnown(i) && !(i >= at.normal && i < at.normal + 3);
-        if (ownsWindow && covariance.rows > lens && at.has(at.normal) && (isKnown(at.normal) || isKnown(at.normal + 1)))
-            count += 2;                 // a direction of three numbers has two
-    }
-    return count;
-}
-
 } // namespace
 
 void poseInCamera(const Fit& fit, size_t k, int camera, Vec3d& rvec, Vec3d& tvec)
@@ -212,7 +193,6 @@ Fit fitImages(const RigData& data, const RigModel& start, const std::vector<int>
         fit.tvecs.push_back(view.pose->tvec);
         poseCovariances.push_back(view.pose->covariance);
     }
-    const std::vector<Mat> cameraCovariances = covariancesOf(fit.rig, flags);
     std::vector<Mat> Rs, Ts;
     Mat_<double> targetErrors;
     for (int c = 0; c < data.cameraCount; c++)
@@ -224,11 +204,14 @@ Fit fitImages(const RigData& data, const RigModel& start, const std::vector<int>
                                 flags & GLASS_ROBUST ? std::min(maxIterations, MAX_ROBUST_ITERATIONS) : maxIterations, 1e-12);
     try
     {
-        fit.rms = fitGlassRig(objectPoints, imagesOf(data, views, false), imagesOf(data, views, true), fit.rig.cameras,
-                              fit.rig.windows, Rs, Ts, fit.rvecs, fit.tvecs, fit.stdDeviations, fit.covariance, noArray(),
-                              fit.imageStatus, fit.inliers, fit.otherMinima, fit.rig.targetCovariance, targetErrors,
-                              data.cameraCount == 1 ? flags : flags | GLASS_FREE_EXTRINSICS, poseCovariances, criteria,
-                              cameraCovariances);
+        const FitStatistics statistics =
+            fitGlassRig(objectPoints, imagesOf(data, views, false), imagesOf(data, views, true), fit.rig.cameras, fit.rig.windows, Rs, Ts,
+                        fit.rvecs, fit.tvecs, fit.stdDeviations, fit.covariance, noArray(), fit.imageStatus, fit.inliers, fit.otherMinima,
+                        fit.rig.targetCovariance, targetErrors, data.cameraCount == 1 ? flags : flags | GLASS_FREE_EXTRINSICS,
+                        poseCovariances, criteria, covariancesOf(fit.rig, flags));
+        fit.rms = statistics.rms;
+        fit.sigma = statistics.sigma;
+        fit.dof = statistics.freedom;
     }
     catch (const CalibrationError& e)
     {
@@ -246,13 +229,6 @@ Fit fitImages(const RigData& data, const RigModel& start, const std::vector<int>
     fit.withTargets = fit.covariance;
     const int count = columnCount(fit.rig);
     fit.covariance = fit.covariance(Rect(0, 0, count, count)).clone();
-    int points = 0;
-    for (const Mat& used : fit.inliers)
-        points += used.empty() ? 0 : countNonZero(used);
-    const size_t free = estimatedWindowParameters(fit).size() + estimatedRigParameters(fit).size();
-    const size_t poses = flags & GLASS_USE_POSES ? 0 : views.size();        // known ones bring as many numbers as they have
-    fit.dof = 2.*points + countPriors(fit.rig, cameraCovariances) - (double)free - 6.*(double)poses;
-    fit.sigma = fit.rms*std::sqrt(points/fit.dof);
     return fit;
 }
 

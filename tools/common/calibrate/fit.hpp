@@ -23,8 +23,8 @@ struct Fit
     std::vector<cv::Mat> inliers;               //!< of each of these, row by row: which points were used
     cv::Mat otherMinima;                        //!< a row each camera, see calibrateGlassRig
     double rms = 0.;
-    double dof = 0.;                            //!< degrees of freedom: coordinates - free parameters - 6 for each unknown pose
-    double sigma = 0.;                          //!< of a pixel coordinate, from the residuals
+    double dof = 0.;                            //!< degrees of freedom: coordinates and what is known - what is estimated
+    double sigma = 0.;                          //!< of a pixel coordinate, from the residuals: what all +- are multiples of
 };
 
 //! One observed corner: where it was seen, and seen minus modelled.

@@ -68,15 +68,15 @@ static RigFit calibrate(InputArrayOfArrays objectPoints, const std::vector<std::
 //! Of all calibrations of rigs.
 static const int RIG_FLAGS = MONO_FLAGS | GLASS_FREE_EXTRINSICS | GLASS_FIX_NORMAL;
 
-double fitGlassRig(InputArrayOfArrays objectPoints, const std::vector<std::vector<Mat> >& imagePointsDirect,
-                   const std::vector<std::vector<Mat> >& imagePointsRefracted, const std::vector<Ptr<RefractiveCamera> >& cameras,
-                   const std::vector<int>& windowOfCamera, InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts,
-                   InputOutputArrayOfArrays rvecs, InputOutputArrayOfArrays tvecs, OutputArray stdDeviations, OutputArray covariance,
-                   OutputArray perViewErrors, OutputArray imageStatus, OutputArrayOfArrays inliers, OutputArray otherMinima,
-                   InputArray targetCovariance, OutputArray targetErrors, int flags, InputArrayOfArrays poseCovariances,
-                   TermCriteria criteria, InputArrayOfArrays cameraCovariances,
-                   const std::vector<std::vector<Mat> >& pixelCovariancesDirect,
-                   const std::vector<std::vector<Mat> >& pixelCovariancesRefracted)
+FitStatistics fitGlassRig(InputArrayOfArrays objectPoints, const std::vector<std::vector<Mat> >& imagePointsDirect,
+                          const std::vector<std::vector<Mat> >& imagePointsRefracted, const std::vector<Ptr<RefractiveCamera> >& cameras,
+                          const std::vector<int>& windowOfCamera, InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts,
+                          InputOutputArrayOfArrays rvecs, InputOutputArrayOfArrays tvecs, OutputArray stdDeviations, OutputArray covariance,
+                          OutputArray perViewErrors, OutputArray imageStatus, OutputArrayOfArrays inliers, OutputArray otherMinima,
+                          InputArray targetCovariance, OutputArray targetErrors, int flags, InputArrayOfArrays poseCovariances,
+                          TermCriteria criteria, InputArrayOfArrays cameraCovariances,
+                          const std::vector<std::vector<Mat> >& pixelCovariancesDirect,
+                          const std::vector<std::vector<Mat> >& pixelCovariancesRefracted)
 {
     const RigFit fit = calibrate(objectPoints, imagePointsDirect, imagePointsRefracted, cameras, windowOfCamera, Rs, Ts,
                                  rvecs, tvecs, flags, poseCovariances, criteria, cameraCovariances, targetCovariance,
@@ -86,7 +86,7 @@ double fitGlassRig(InputArrayOfArrays objectPoints, const std::vector<std::vecto
     writeMasks(fit.inliers, inliers);
     writeMat(fit.otherMinima, otherMinima);
     writeMat(fit.targetErrors, targetErrors);
-    return fit.rms;
+    return { fit.rms, fit.sigma, fit.freedom };
 }
 
 double calibrateGlassRig(InputArrayOfArrays objectPoints,
@@ -122,7 +122,7 @@ double calibrateGlassRig(InputArrayOfArrays objectPoints,
     checkFlags(flags, RIG_FLAGS | GLASS_USE_POSES);
     return fitGlassRig(objectPoints, imagePointsDirect, imagePointsRefracted, cameras, windowOfCamera, Rs, Ts, rvecs, tvecs,
                        stdDeviations, covariance, perViewErrors, imageStatus, inliers, otherMinima, targetCovariance, targetErrors,
-                       flags, poseCovariances, criteria, cameraCovariances, pixelCovariancesDirect, pixelCovariancesRefracted);
+                       flags, poseCovariances, criteria, cameraCovariances, pixelCovariancesDirect, pixelCovariancesRefracted).rms;
 }
 
 double calibrateGlassRig(InputArrayOfArrays objectPoints, const std::vector<std::vector<Mat> >& imagePointsDirect,

@@ -286,6 +286,8 @@ static FitOutcome fitSeen(Rig& rig, const RigTask& given, RigFit& fit)
     if (task.wantsCovariance && (criteria.type & TermCriteria::EPS))        // else it is not where the squares are least
         covariance.widen(problem);
     eigen2cv(covariance.ofParameters, fit.covariance);
+    fit.sigma = std::sqrt(variance);
+    fit.freedom = problem.freedom();
     fit.targetErrors = targetErrorsOf(problem);
     describeImages(problem, task, outliers.imageStatus(), fit);
     markUnusable(given, fit);

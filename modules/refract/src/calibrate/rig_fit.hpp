@@ -14,7 +14,9 @@ namespace cv { namespace refract {
 struct RigFit
 {
     std::vector<Pose> poses;        //!< object -> camera 1; not found where a view has no point, or none left
-    double rms;
+    double rms = 0;                 //!< pixels
+    double sigma = 0;               //!< of a pixel coordinate: the residuals of pixels, by what priors leave of the freedom
+    int freedom = 0;                //!< equations - unknowns; priors are equations
     Mat covariance, stdDeviations;  //!< of the public parameters
     Mat perViewErrors;              //!< columns: direct, refracted of each camera
     Mat jacobian;                   //!< if wanted

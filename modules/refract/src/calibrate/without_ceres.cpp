@@ -90,11 +90,11 @@ double calibrateGlassRig(InputArrayOfArrays, const std::vector<std::vector<Mat> 
     throwWithoutCeres("calibrateGlassRig");
 }
 
-double fitGlassRig(InputArrayOfArrays, const std::vector<std::vector<Mat> >&, const std::vector<std::vector<Mat> >&,
-                   const std::vector<Ptr<RefractiveCamera> >&, const std::vector<int>&, InputOutputArrayOfArrays,
-                   InputOutputArrayOfArrays, InputOutputArrayOfArrays, InputOutputArrayOfArrays, OutputArray, OutputArray,
-                   OutputArray, OutputArray, OutputArrayOfArrays, OutputArray, InputArray, OutputArray, int, InputArrayOfArrays,
-                   TermCriteria, InputArrayOfArrays, const std::vector<std::vector<Mat> >&, const std::vector<std::vector<Mat> >&)
+FitStatistics fitGlassRig(InputArrayOfArrays, const std::vector<std::vector<Mat> >&, const std::vector<std::vector<Mat> >&,
+                          const std::vector<Ptr<RefractiveCamera> >&, const std::vector<int>&, InputOutputArrayOfArrays,
+                          InputOutputArrayOfArrays, InputOutputArrayOfArrays, InputOutputArrayOfArrays, OutputArray, OutputArray,
+                          OutputArray, OutputArray, OutputArrayOfArrays, OutputArray, InputArray, OutputArray, int, InputArrayOfArrays,
+                          TermCriteria, InputArrayOfArrays, const std::vector<std::vector<Mat> >&, const std::vector<std::vector<Mat> >&)
 {
     throwWithoutCeres("calibrateGlassRig");
 }
