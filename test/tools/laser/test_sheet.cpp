@@ -183,6 +183,32 @@ TEST_CASE("A bright edge of the board, where its pattern has none, is not the li
     CHECK_THROWS_AS(fitSheet(withEdge(none), calibration, CORNER, 1.7), Failure);
 }
 
+TEST_CASE("No point of a line is on a dot of the board", "[laser][sheet]")
+{
+    const Calibration calibration = laser::camera();
+    for (const char* pattern : {"circles", "acircles"})
+    {
+        CAPTURE(pattern);
+        TargetOptions options;
+        options.pattern = pattern;
+        options.size = "4x9";
+        options.square = laser::SQUARE;
+        const Target target(options);
+        std::vector<Point2d> dots;
+        refract::refractiveProjectPoints(target.objectPoints(), Vec3d(0.1, -0.1, 0.2), Vec3d(-60, -80, 450), calibration.cameras[0].camera,
+                                         dots);
+        Mat signal = Mat::zeros(laser::IMAGE, CV_32F);
+        for (int y = 10; y < signal.rows; y += 20)          // lines wherever there is room for them
+            line(signal, Point(0, y), Point(signal.cols, y + 3), Scalar(90), 3, LINE_AA);
+        GaussianBlur(signal, signal, Size(), 1.2);
+        const BoardImage image = findLinesOnBoard("", calibration, target, dots, signal, 1.7);
+        CHECK(image.points.size() > 50);
+        for (const BoardPoint& p : image.points)
+            for (const Point3d& dot : target.objectPoints())
+                REQUIRE(norm(p.onBoard - Point2d(dot.x, dot.y)) > target.dotRadius());
+    }
+}
+
 TEST_CASE("Points on a sheet are true within their standard deviations", "[laser][sheet]")
 {
     const Calibration calibration = laser::camera();

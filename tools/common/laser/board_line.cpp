@@ -15,7 +15,7 @@ namespace {
 
 const double BEYOND = 1.5;              // squares that the board reaches beyond the outermost corners that are seen
 const double EDGE_PX = 3.;              // an edge's colours reach so far
-const double DOT = 0.35;                // of the spacing: no dot is larger
+const double LARGEST_DOT = 7./6.;       // of the radius that dots are drawn with
 const double CANDIDATE_PX = 1.5;        // distance of a candidate's points from its line
 const double ALIGNED = 0.9;             // cosine between a point's own direction and its line
 const int CANDIDATES = 5, SAMPLES = 1500, FEWEST = 20;      // of a line, in pixels along it
@@ -70,7 +70,7 @@ bool isNearEdge(const Target& target, const Point2d& p, double pixel)
         return least < EDGE_PX*pixel;
     }
     return std::any_of(target.objectPoints().begin(), target.objectPoints().end(), [&](const Point3d& dot) {
-        return norm(p - Point2d(dot.x, dot.y)) < DOT*target.square() + EDGE_PX*pixel; });
+        return norm(p - Point2d(dot.x, dot.y)) < LARGEST_DOT*target.dotRadius() + EDGE_PX*pixel; });
 }
 
 //! Pixels by which a point is off a line on the board. @param normal of the line

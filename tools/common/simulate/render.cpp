@@ -42,6 +42,7 @@ public:
     {
         drawing_ = target.drawing(DRAWING);
         border_ = target.border();
+        radius_ = target.dotRadius()/target.square();
         columns_ = squaresOf(target).width;
         rows_ = squaresOf(target).height;
     }
@@ -62,14 +63,13 @@ private:
         if (!drawing_.empty())
             return inside && drawing_.at<uchar>(std::min((int)((t + border_)*DRAWING), drawing_.rows - 1),
                                                 std::min((int)((s + border_)*DRAWING), drawing_.cols - 1)) < 128;
-        const double radius = 0.3*(pattern_ == Target::ACIRCLES ? 2 : 1);
         for (int row = cvFloor(t); row <= cvFloor(t) + 1; row++)
         {
             if (row < 0 || row >= rows_)
                 continue;
             const int step = pattern_ == Target::ACIRCLES ? 2 : 1, shift = pattern_ == Target::ACIRCLES ? row % 2 : 0;
             const int column = cvRound((s - shift)/step)*step + shift;
-            if (column >= 0 && column < columns_ && std::hypot(s - column, t - row) < radius)
+            if (column >= 0 && column < columns_ && std::hypot(s - column, t - row) < radius_)
                 return true;
         }
         return false;
@@ -77,7 +77,7 @@ private:
 
     Target::Pattern pattern_;
     Exposure exposure_;
-    double border_, columns_, rows_;
+    double border_, radius_, columns_, rows_;
     Mat drawing_;           // of a board with markers
 };
 

@@ -156,7 +156,7 @@ BoardPage::BoardPage(const Target& target, double millimetres, const std::string
 
 double BoardPage::border() const
 {
-    return !target_.hasDots() ? target_.border()*square() : target_.pattern() == Target::ACIRCLES ? 2*DOT*square() : DOT*square();
+    return target_.isDotGrid() ? target_.dotRadius()*millimetres_ : target_.border()*square();
 }
 
 Size2d BoardPage::neededPaper() const

@@ -13,8 +13,6 @@ namespace tools {
 
 struct BoardPage
 {
-    //! Dots, of the distance between the nearest in a row (as refract_simulate renders them): their radius.
-    static constexpr double DOT = 0.3;
     static constexpr double RULER = 100.;           //!< mm
 
     /** @param millimetres a unit of the target's lengths has

@@ -81,7 +81,7 @@ double reachFrom(const Target& target)
 std::pair<Point2d, Point2d> across(const Point2d& a, const Point2d& b, const Target& target)
 {
     const Point2d step = b - a, middle = 0.5*(a + b);
-    if (target.hasDots())
+    if (target.isDotGrid())
         return {a, middle};
     const double reach = reachFrom(target);
     const Point2d normal(-step.y, step.x);

@@ -46,8 +46,9 @@ public:
     explicit Target(const TargetOptions& options);
 
     Pattern pattern() const { return pattern_; }
-    //! A grid of dots, not of edges.
-    bool hasDots() const { return pattern() == CIRCLES || pattern() == ACIRCLES; }
+    bool isDotGrid() const { return pattern() == CIRCLES || pattern() == ACIRCLES; }
+    //! Of a dot grid that refract_board draws and refract_simulate renders.
+    double dotRadius() const { return 0.3*(pattern() == ACIRCLES ? 2 : 1)*square_; }
     cv::Size size() const { return size_; }                 //!< inner corners, dots, or corners of tags
     std::string sizeText() const;                           //!< as --size has it; AprilGrid: tags
     std::string patternName() const;                        //!< as --pattern has it
