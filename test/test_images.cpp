@@ -54,7 +54,7 @@ TEST_CASE("An undistorted image: types, overloads, in place, without window cv::
     const Ptr<RefractiveCamera> c = camera();
     Mat map1, map2;
     initRefractiveUndistortRectifyMap(c, 600., noArray(), noArray(), noise.size(), CV_16SC2, map1, map2);
-    for (int type : { CV_8UC1, CV_8UC3, CV_16UC3, CV_32FC3 })
+    for (int type : { CV_8UC1, CV_8UC3, CV_16UC3, CV_16SC3, CV_32FC3, CV_64FC3 })
     {
         Mat image, expected, corrected, plane;
         noise.convertTo(image, type);
@@ -76,6 +76,9 @@ TEST_CASE("An undistorted image: types, overloads, in place, without window cv::
     refractiveUndistortImage(noise, ours, K, D, GlassWindow(), INF);
     undistort(noise, theirs, K, D);
     CHECK(norm(ours, theirs, NORM_L1)/ours.total() < 0.5);      // both round the places to 1/32 px
+    for (int depth : { CV_8S, CV_32S })         // not of cv::remap
+        CHECK_THAT(thrown([&] { refractiveUndistortImage(Mat::zeros(480, 640, depth), ours, c, 600); }),
+                   Contains("src is " + typeToString(depth)));
     CHECK_THAT(thrown([&] { refractiveUndistortImage(noise, ours, c, -3.); }), Contains("depth is -3"));
     CHECK_THAT(thrown([&] { refractiveUndistortImage(noise, ours, c, noArray()); }), Contains("depth is empty"));
 }

@@ -38,14 +38,16 @@ without a window.
   index < 1) throws cv::Exception. Its text gives the name of the argument and its value. Empty arrays of points, pixels or
   disparities give empty output; only calibrations and bundle adjustment refuse them. Those without an answer throw
   CalibrationError, a cv::Exception too.
-- **Without Ceres**: calibrateGlass, stereoCalibrateGlass, calibrateGlassRig and refractiveBundleAdjust need Ceres. In a build
-  without it they throw with the code Error::StsNotImplemented, and the text says what to install. All other functions work.
+- **Without Ceres**: calibrateGlass, stereoCalibrateGlass, calibrateGlassRig, selectLensCoefficients and refractiveBundleAdjust
+  need Ceres. In a build without it they throw with the code Error::StsNotImplemented, and the text says what to install. All
+  other functions work.
 - **Arrays**: points as in calib3d: Nx1 or 1xN with 2 (3) channels, Nx2 (Nx3) with one channel, 2xN (3xN) with one
   channel (2x2 and 3x3 are a point a row), std::vector; float32 or float64; non-continuous views included, as inputs and
   as outputs. Computation is in double. Outputs are Nx1 with channels and have the input's depth (of float32 and float64:
   float64) unless the caller fixed the type; a caller's array of one row keeps that shape. Depths of the scene (z) may have any
   type of numbers. Rotations of several cameras: std::vector of Mat or Matx33d, or rotation vectors (as a result, too, in a
-  std::vector<Vec3d>). A rotation matrix may be off by 1e-3, as a printed one is: the nearest rotation is taken.
+  std::vector<Vec3d>). Of a rotation matrix the norm of R R^T - I may be 1e-3, as of one that is printed with four decimals:
+  the nearest rotation is taken.
 - **Object coordinates** may have any origin, except where poses are known in part: survey coordinates lose no more than their
   own rounding.
 - **Infinity**: where a far end may be infinite, DBL_MAX or more also means infinity.
@@ -60,9 +62,10 @@ without a window.
 - **Covariances of what is known** (`cameraCovariances`, `rigCovariance`, `poseCovariances`, `targetCovariance`; those that are
   propagated, `calibrationCovariance` and `cameraCovariance`, too) obey one rule. They are symmetric and positive semidefinite,
   except for the rounding of printed numbers, and are refused with their name and numbers otherwise. They may be singular: then
-  a combination is known. A variance of 0: the quantity is exactly as given; flags may still free a window, and all that
-  rigCovariance is of. A variance of NaN: nothing is known of it, and its row and column are not read (what is propagated must
-  be known). `lengthScaleStd`, and the standard deviation of a length, may be NaN, too. Of `cameraCovariances` the blocks of
+  a combination is known. A variance of 0: the quantity is exactly as given. There are two exceptions: of a window in
+  cameraCovariances, and of all that rigCovariance is of, a variance of 0 leaves it to the flags whether it is estimated. A
+  variance of NaN: nothing is known of it, and its row and column are not read (what is propagated must be known).
+  `lengthScaleStd`, and the standard deviation of a length, may be NaN, too. Of `cameraCovariances` the blocks of
   the lens, of the window (its normal or center and axis, its distance, its media), and of R and T are read, not the
   correlations between these: `rigCovariance` has them all.
 - **Messages**: the library writes none, but for the iterations of each fit where OpenCV's log has the level INFO. While it
@@ -140,21 +143,18 @@ enum RectifyFlags {
 //! @addtogroup refract_calibrate
 //! @{
 
-/** @brief Flags of calibrateGlass, stereoCalibrateGlass, calibrateGlassRig and refractiveBundleAdjust. The place of a window is
-free unless GLASS_FIX_NORMAL is set: a pane's normal, a dome's centre, a tube's centre and axis. A flag whose parameter a window
-does not have is refused: a dome has no distance and no wedge, a pane no radius. The values are not those of cv::CALIB_..., and
-must not be mixed with them.
-
-With GLASS_FREE_INTRINSICS the coefficients that the lens has are estimated, also if they are 0 at the start: a lens without
-coefficients stays without distortion, one with 4 gets k1, k2, p1, p2, and so on. A GLASS_FIX_... flag keeps a parameter at its
-initial value, as CALIB_FIX_... does in cv::calibrateCamera and cv::fisheye::calibrate. If the lens does not have the
-parameter, the flag has no effect.
-
-A rig is called sealed if GLASS_FREE_INTRINSICS is set and all observations are images through the windows: no direct image, no
-known pose, no known camera. Lens, window and pose are then strongly correlated, but measured lengths hardly depend on these
-correlated directions. Each parameter is returned with its large standard deviation and the full covariance. The calibration is
-refused for this only if a GLASS_REQUIRE_... flag is set. If the rig is not sealed, each free parameter must be determined by
-itself.
+/** @brief Flags of calibrateGlass, stereoCalibrateGlass, calibrateGlassRig, selectLensCoefficients and
+refractiveBundleAdjust. The place of a window is free unless GLASS_FIX_NORMAL is set: a pane's normal, a dome's centre, a
+tube's centre and axis. A flag whose parameter a window does not have is refused: a dome has no distance and no wedge, a pane
+no radius. The values are not those of cv::CALIB_..., and must not be mixed with them. With GLASS_FREE_INTRINSICS the
+coefficients that the lens has are estimated, also if they are 0 at the start: a lens without coefficients stays without
+distortion, one with 4 gets k1, k2, p1, p2, and so on. A GLASS_FIX_... flag keeps a parameter at its initial value, as
+CALIB_FIX_... does in cv::calibrateCamera and cv::fisheye::calibrate. If the lens does not have the parameter, the flag has no
+effect. A rig is called sealed if GLASS_FREE_INTRINSICS is set and all observations are images through the windows: no direct
+image, no known pose, no known camera. Lens, window and pose are then strongly correlated, but measured lengths hardly depend
+on these correlated directions. Each parameter is returned with its large standard deviation and the full covariance. The
+calibration is refused for this only if a GLASS_REQUIRE_... flag is set. If the rig is not sealed, each free parameter must be
+determined by itself.
 */
 enum GlassCalibrationFlags {
     GLASS_FREE_THICKNESS = 1,       //!< thickness of every layer
@@ -194,10 +194,11 @@ enum GlassImageStatus {
     GLASS_IMAGE_UNUSABLE = 3        //!< rejected: fewer than a third of its points, or fewer than 4, fit one pose
 };
 #ifndef OPENCV_BINDINGS_PARSER      // other languages have exceptions of their own
-/** @brief Why calibrateGlass, stereoCalibrateGlass, calibrateGlassRig, refractiveBundleAdjust or calibrateGlassNormal has no
-answer for these data. A program acts on `cause` and need not read the text.
+/** @brief Why calibrateGlass, stereoCalibrateGlass, calibrateGlassRig, selectLensCoefficients, refractiveBundleAdjust or
+calibrateGlassNormal has no answer for these data. A program in C++ acts on `cause` and need not read the text.
 
-It is a cv::Exception with a code and a text as usual; in Python it is cv2.error. An argument of the wrong type, size or value
+It is a cv::Exception with a code and a text as usual. In Python it is cv2.error; that of the package opencv_refract has the
+members below as attributes, the cause by its name. An argument of the wrong type, size or value
 throws a plain cv::Exception.
 */
 class CV_EXPORTS CalibrationError : public Exception
@@ -528,8 +529,8 @@ CV_EXPORTS_W void readRig(const String& filename, CV_OUT std::vector<Ptr<Refract
 @param Ts as above.
 @param windowOfCamera index of the window of each camera, as for calibrateGlassRig (key `window_of_camera`): cameras with equal
 numbers share one window. Empty if the file does not have it.
-@param covariance PxP CV_64F of all cameras' parameters, then rvec (3) and T (3) of each but the first, as
-calibrateGlassRigExtended returns it (key `covariance`); empty where the file has none.
+@param covariance PxP CV_64F of all cameras' parameters, then rvec (3) and T (3) of each but the first, as calibrateGlassRig
+returns it (key `covariance`); empty where the file has none.
 */
 CV_EXPORTS_AS(readRigExtended) void readRig(const String& filename, CV_OUT std::vector<Ptr<RefractiveCamera> >& cameras,
         OutputArrayOfArrays Rs, OutputArrayOfArrays Ts, CV_OUT std::vector<int>& windowOfCamera, OutputArray covariance);
@@ -659,11 +660,11 @@ CV_EXPORTS_W void refractiveUndistortPoints(InputArray src, OutputArray dst, con
 @param cameraMatrix 3x3.
 @param distCoeffs 0, 4, 5, 8, 12 or 14 coefficients.
 @param window see GlassWindow.
-@param depth z of the scene points, camera frame: one number for all, or N numbers. An invalid depth sets only the status of
-its own point. (d, 0, 0, 0) means the number d, because Scalar(d) is such an array. For exactly four points this is ambiguous
-and is refused: give a double, or an array of one number; a plane is not taken here. Depths that are not positive have the
-status REFRACT_BEHIND_WINDOW, without a window REFRACT_NO_INTERSECTION; positive ones have no effect there, and the array may
-be empty.
+@param depth z of the scene points, camera frame: one number for all, or N numbers. One number must be positive, or this
+throws; of N numbers an invalid one sets only the status of its own point. (d, 0, 0, 0) means the number d, because Scalar(d)
+is such an array. For exactly four points this is ambiguous and is refused: give a double, or an array of one number; a plane
+is not taken here. Depths that are not positive have the status REFRACT_BEHIND_WINDOW, without a window
+REFRACT_NO_INTERSECTION; positive ones have no effect there, and the array may be empty.
 @param R rotation camera -> rectified camera, 3x3 or rotation vector; omitted = identity.
 @param P new camera matrix 3x3 or projection matrix 3x4 (its left 3x3 is used); omitted = identity.
 @param status Nx1 CV_8U, see RefractiveStatus.
@@ -732,37 +733,13 @@ CV_EXPORTS_W void refractivePointsOnPlane(InputArray imagePoints, OutputArray po
 CV_EXPORTS_W void refractivePointsOnPlane(InputArray imagePoints, OutputArray points3D,
         const Ptr<RefractiveCamera>& camera, const Vec4d& plane, OutputArray status = noArray());
 
-/** @brief Maps for cv::remap from a raw image to the image of the plane z = depth in a pinhole camera without window.
+/** @brief Maps for cv::remap from a raw image to the image of a plane in a pinhole camera without window.
 @param cameraMatrix 3x3.
 @param distCoeffs 0, 4, 5, 8, 12 or 14 coefficients.
 @param window see GlassWindow.
-@param depth z > 0 of the plane, camera frame; may be infinity.
-@param R rotation camera -> rectified camera, 3x3 or rotation vector; may be empty.
-@param newCameraMatrix 3x3 or 3x4 of the new image; empty: cameraMatrix.
-@param size of the new image.
-@param m1type CV_32FC1, CV_32FC2 or CV_16SC2, as cv::initUndistortRectifyMap; 0 or less: CV_16SC2, which holds raw pixels up to
-32767 and is refused where the raw image (imageSize() of the camera, else twice its principal point) has farther ones that are
-needed.
-@param map1 first map, accurate to 1e-6 px before rounding to its type; pixels without a solution map to (-1, -1).
-@param map2 second map; empty for CV_32FC2.
-*/
-CV_EXPORTS_W void initRefractiveUndistortRectifyMap(
-        InputArray cameraMatrix, InputArray distCoeffs, const GlassWindow& window,
-        double depth, InputArray R, InputArray newCameraMatrix, Size size, int m1type,
-        OutputArray map1, OutputArray map2);
-
-//! @overload
-CV_EXPORTS_W void initRefractiveUndistortRectifyMap(const Ptr<RefractiveCamera>& camera,
-        double depth, InputArray R, InputArray newCameraMatrix, Size size, int m1type,
-        OutputArray map1, OutputArray map2);
-
-/** @overload
-@param cameraMatrix 3x3.
-@param distCoeffs 0, 4, 5, 8, 12 or 14 coefficients.
-@param window see GlassWindow.
-@param depth one number: the plane z = depth (camera frame), infinity allowed; four numbers: the plane (a, b, c, d): a x + b y +
-c z = d. (a, 0, 0, 0), a plane through the camera, stands for the number a, as Scalar(a) does. Empty as in
-refractiveUndistortPoints.
+@param depth one number > 0: the plane z = depth (camera frame), infinity allowed; four numbers: the plane (a, b, c, d): a x +
+b y + c z = d. (a, 0, 0, 0), a plane through the camera, stands for the number a, as Scalar(a) does. For a camera without a
+window it has no effect and may be 0 or empty (Python: None).
 @param R rotation camera -> rectified camera, 3x3 or rotation vector; may be empty.
 @param newCameraMatrix 3x3 or 3x4 of the new image; empty: cameraMatrix.
 @param size of the new image.
@@ -783,32 +760,16 @@ CV_EXPORTS_W void initRefractiveUndistortRectifyMap(const Ptr<RefractiveCamera>&
         OutputArray map1, OutputArray map2);
 
 /** @brief The image of a plane in a pinhole camera without window: cv::undistort through a window.
-@param src raw image.
+@param src raw image of a depth that cv::remap takes: CV_8U, CV_16U, CV_16S, CV_32F or CV_64F.
 @param dst corrected image, of the size and type of src; black where there is no solution or no pixel of the raw image.
-@param cameraMatrix 3x3.
-@param distCoeffs 0, 4, 5, 8, 12 or 14 coefficients.
-@param window see GlassWindow.
-@param depth z > 0 of the plane, camera frame; may be infinity.
-@param newCameraMatrix 3x3 of the corrected image; empty: cameraMatrix.
-
-Calls initRefractiveUndistortRectifyMap and cv::remap (bilinear); in parts where the image is larger than the 32766 pixels that
-cv::remap takes. For many images compute the maps once.
-*/
-CV_EXPORTS_W void refractiveUndistortImage(InputArray src, OutputArray dst, InputArray cameraMatrix, InputArray distCoeffs,
-        const GlassWindow& window, double depth, InputArray newCameraMatrix = noArray());
-
-//! @overload
-CV_EXPORTS_W void refractiveUndistortImage(InputArray src, OutputArray dst, const Ptr<RefractiveCamera>& camera, double depth,
-        InputArray newCameraMatrix = noArray());
-
-/** @overload
-@param src raw image.
-@param dst corrected image, of the size and type of src.
 @param cameraMatrix 3x3.
 @param distCoeffs 0, 4, 5, 8, 12 or 14 coefficients.
 @param window see GlassWindow.
 @param depth one number or a plane, as initRefractiveUndistortRectifyMap takes it.
 @param newCameraMatrix 3x3 of the corrected image; empty: cameraMatrix.
+
+Calls initRefractiveUndistortRectifyMap and cv::remap (bilinear); in parts where the image is larger than the 32766 pixels that
+cv::remap takes. For many images compute the maps once.
 */
 CV_EXPORTS_W void refractiveUndistortImage(InputArray src, OutputArray dst, InputArray cameraMatrix, InputArray distCoeffs,
         const GlassWindow& window, InputArray depth, InputArray newCameraMatrix = noArray());
@@ -821,7 +782,7 @@ CV_EXPORTS_W void refractiveUndistortImage(InputArray src, OutputArray dst, cons
 @param cameraMatrix 3x3.
 @param distCoeffs 0, 4, 5, 8, 12 or 14 coefficients.
 @param window see GlassWindow.
-@param depth z > 0 of the plane, camera frame; may be infinity.
+@param depth one number or a plane, as initRefractiveUndistortRectifyMap takes it.
 @param imageSize of the raw image.
 @param alpha 0: all new pixels are valid, 1: no raw pixel that sees the plane is lost; values between interpolate.
 @param newImageSize of the new image; Size(): imageSize.
@@ -837,25 +798,6 @@ percent.
 
 Throws if nothing bounds the valid part, as of a lens that looks 90 degrees from the axis on a border of its image, and with
 alpha > 0 if a raw pixel is 89 degrees or more from the axis: a pinhole camera does not show it.
-*/
-CV_EXPORTS_W Mat getOptimalNewRefractiveCameraMatrix(InputArray cameraMatrix, InputArray distCoeffs, const GlassWindow& window,
-        double depth, Size imageSize, double alpha, Size newImageSize = Size(), CV_OUT Rect* validPixROI = 0,
-        bool centerPrincipalPoint = false);
-
-//! @overload
-CV_EXPORTS_W Mat getOptimalNewRefractiveCameraMatrix(const Ptr<RefractiveCamera>& camera, double depth, Size imageSize,
-        double alpha, Size newImageSize = Size(), CV_OUT Rect* validPixROI = 0, bool centerPrincipalPoint = false);
-
-/** @overload
-@param cameraMatrix 3x3.
-@param distCoeffs 0, 4, 5, 8, 12 or 14 coefficients.
-@param window see GlassWindow.
-@param depth one number or a plane, as initRefractiveUndistortRectifyMap takes it.
-@param imageSize of the raw image.
-@param alpha as above.
-@param newImageSize of the new image; Size(): imageSize.
-@param validPixROI rectangle of the new image in which all pixels are valid.
-@param centerPrincipalPoint the principal point is in the middle of the new image.
 */
 CV_EXPORTS_W Mat getOptimalNewRefractiveCameraMatrix(InputArray cameraMatrix, InputArray distCoeffs, const GlassWindow& window,
         InputArray depth, Size imageSize, double alpha, Size newImageSize = Size(), CV_OUT Rect* validPixROI = 0,
@@ -1048,7 +990,7 @@ CV_EXPORTS_W void triangulateRefractive(const std::vector<Ptr<RefractiveCamera> 
 @param status as above.
 @param flags as above.
 @param pixelSigma standard deviation of each pixel coordinate.
-@param calibrationCovariance empty, or the covariance that calibrateGlassRigExtended returns: the parameters of all cameras,
+@param calibrationCovariance empty, or the covariance that calibrateGlassRig returns: the parameters of all cameras,
 then rvec and T of each but the first; it is propagated to the points.
 @param covariance Nx9 CV_64F, the 3x3 covariance of each point row by row, of the maximum-likelihood point.
 @param reprojectionErrors N x cameras CV_64F, pixels: distance of each point's projection from the given pixel, of half a pixel
@@ -1093,11 +1035,12 @@ virtual centres and, as in calib3d, P2 the baseline.
 with maps for a depth per pixel.
 @param flags RECTIFY_ZERO_DISPARITY or 0.
 @param alpha as in cv::stereoRectify, with maps for that plane: 0 all new pixels are valid, 1 no raw pixel is lost, negative:
-neither of them. The promise is that of getOptimalNewRefractiveCameraMatrix, and so is what is refused.
+neither of them, above 1 as 1. The promise is that of getOptimalNewRefractiveCameraMatrix, and so is what is refused.
 @param newImageSize of the new images; Size(): imageSize.
 @param validPixROI1 rectangle of the new image 1 in which all pixels are valid, with maps for that plane; empty if the lens is
 so wide that nothing bounds it.
 @param validPixROI2 the same of the new image 2.
+All matrices are CV_64F.
 @return RMS and largest difference of rows (of columns, if one camera is above the other) over the common view and depthRange
 with maps for the plane, in pixels.
 
@@ -1120,9 +1063,11 @@ CV_EXPORTS_W Vec2d refractiveStereoRectify(InputArray cameraMatrix1, InputArray 
         int flags = RECTIFY_ZERO_DISPARITY, double alpha = -1, Size newImageSize = Size(),
         CV_OUT Rect* validPixROI1 = 0, CV_OUT Rect* validPixROI2 = 0);
 
-/** @brief Maps for cv::remap from a raw image to an image of a rectified pair, for the plane z = depth.
+/** @brief Maps for cv::remap from a raw image to an image of a rectified pair.
 @param camera lens and window.
-@param depth z of the plane, rectified frame; may be infinity.
+@param depth of the scene in the new image: one number > 0: the plane z = depth, infinity allowed; four numbers: the plane
+(a, b, c, d); or an array of the new image's size, of any type, with the z of each new pixel. All in the rectified frame. Four
+numbers (a, 0, 0, 0) and an empty array mean the same as in initRefractiveUndistortRectifyMap.
 @param R R1 or R2 of refractiveStereoRectify.
 @param P P1 or P2.
 @param T for camera 2: translation camera 1 -> camera 2; empty for camera 1. P contains the position of the pinhole, and only T
@@ -1130,26 +1075,6 @@ that of the camera. The pinhole must be on the axis of the camera's window (with
 refractiveStereoRectify returns it; otherwise T, P and the camera do not belong together, and this throws.
 @param size of the new image.
 @param m1type as initRefractiveUndistortRectifyMap.
-@param map1 first map; pixels without a solution map to (-1, -1).
-@param map2 second map; empty for CV_32FC2.
-*/
-CV_EXPORTS_W void initRefractiveStereoRectifyMap(const Ptr<RefractiveCamera>& camera, double depth,
-        InputArray R, InputArray P, InputArray T, Size size, int m1type, OutputArray map1, OutputArray map2);
-
-//! @overload
-CV_EXPORTS_W void initRefractiveStereoRectifyMap(InputArray cameraMatrix, InputArray distCoeffs, const GlassWindow& window,
-        double depth, InputArray R, InputArray P, InputArray T, Size size, int m1type, OutputArray map1, OutputArray map2);
-
-/** @overload
-@param camera lens and window.
-@param depth of the scene in the new image: one number: the plane z = depth; four numbers: the plane (a, b, c, d); or an array
-of the new image's size, of any type, with the z of each new pixel. All in the rectified frame. Four numbers (a, 0, 0, 0) and
-an empty array mean the same as in initRefractiveUndistortRectifyMap.
-@param R R1 or R2 of refractiveStereoRectify.
-@param P P1 or P2.
-@param T as above.
-@param size of the new image.
-@param m1type as above.
 @param map1 first map; pixels without a solution, or whose depth is NaN, map to (-1, -1).
 @param map2 second map; empty for CV_32FC2.
 */
@@ -1476,7 +1401,7 @@ rigid motion by which all targets, or the mount of all cameras, moved between th
 of camera 1. (A rotation about a point c adds [c]x times its rotation vector to the translation.) A variance of 0: there is no
 such error; NaN: it may be of any size. These errors are estimated within the prior, so that all uncertainties contain them: in
 air a common motion of the targets resembles a tilt of the window. Empty: there are none. With it, stdDeviations and covariance
-have seven more rows at their end.
+have seven more rows at their end (and covariance as many columns), which other calls do not take: give these the part before.
 @param targetErrors 7x1 CV_64F: the estimates; NaN without targetCovariance.
 @param flags as above.
 @param poseCovariances as above.
@@ -1799,9 +1724,9 @@ CV_EXPORTS_W int refractiveSolvePnPGeneric(InputArray objectPoints, InputArray i
 @param rvec as above.
 @param tvec as above.
 @param reprojectionError as above.
-@param covariances 6x6 CV_64F of each pose, as refractiveSolvePnPExtended.
-@param sigma as refractiveSolvePnPExtended.
-@param cameraCovariance as refractiveSolvePnPExtended.
+@param covariances 6x6 CV_64F of each pose, as refractiveSolvePnP has it.
+@param sigma as refractiveSolvePnP has it.
+@param cameraCovariance as refractiveSolvePnP has it.
 @return as above.
 */
 CV_EXPORTS_AS(refractiveSolvePnPGenericExtended) int refractiveSolvePnPGeneric(InputArray objectPoints, InputArray imagePoints,
@@ -1877,9 +1802,9 @@ CV_EXPORTS_W bool refractiveSolvePnPRansac(InputArray objectPoints, InputArray i
 @param reprojectionError as above.
 @param confidence as above.
 @param inliers as above.
-@param covariance 6x6 CV_64F, as refractiveSolvePnPExtended, from the inliers without outlying residuals.
-@param sigma as refractiveSolvePnPExtended.
-@param cameraCovariance as refractiveSolvePnPExtended.
+@param covariance 6x6 CV_64F, as refractiveSolvePnP has it, from the inliers without outlying residuals.
+@param sigma as refractiveSolvePnP has it.
+@param cameraCovariance as refractiveSolvePnP has it.
 @return as above; covariance is empty if there is no pose.
 */
 CV_EXPORTS_AS(refractiveSolvePnPRansacExtended) bool refractiveSolvePnPRansac(InputArray objectPoints, InputArray imagePoints,

@@ -17,8 +17,7 @@ namespace {
 bool isLarge(Size size) { return std::max(size.width, size.height) >= SHRT_MAX; }
 
 //! A part of the corrected image, from the part of the raw one that it shows; in smaller parts where that is too large.
-template<typename Depth>
-void undistortPart(const Mat& image, Mat& corrected, const Ptr<RefractiveCamera>& camera, const Depth& depth, const Matx33d& newK,
+void undistortPart(const Mat& image, Mat& corrected, const Ptr<RefractiveCamera>& camera, InputArray depth, const Matx33d& newK,
                    const Rect& part)
 {
     const Matx33d toPart(1, 0, -part.x, 0, 1, -part.y, 0, 0, 1);
@@ -56,10 +55,13 @@ void undistortPart(const Mat& image, Mat& corrected, const Ptr<RefractiveCamera>
     remap(image(seen), result, map1, map2, INTER_LINEAR, BORDER_CONSTANT);
 }
 
-template<typename Depth>
-void undistortImage(InputArray src, OutputArray dst, const Ptr<RefractiveCamera>& camera, const Depth& depth,
-                    InputArray newCameraMatrix)
+} // namespace
+
+void refractiveUndistortImage(InputArray src, OutputArray dst, const Ptr<RefractiveCamera>& camera, InputArray depth,
+                              InputArray newCameraMatrix)
 {
+    CV_INSTRUMENT_REGION();
+
     const Mat image = src.getMat();
     Mat corrected;      // not dst, which may be src
     if (image.empty())
@@ -69,6 +71,9 @@ void undistortImage(InputArray src, OutputArray dst, const Ptr<RefractiveCamera>
     }
     if (image.dims > 2)
         CV_Error_(Error::StsBadSize, ("src has %d dimensions; it must be an image", image.dims));
+    if (image.depth() == CV_8S || image.depth() == CV_32S || image.depth() > CV_64F)
+        CV_Error_(Error::StsUnsupportedFormat, ("src is %s; it must be CV_8U, CV_16U, CV_16S, CV_32F or CV_64F",
+                                                typeToString(image.type()).c_str()));
     if (isLarge(image.size()))
     {
         const int PART = 2048;
@@ -86,30 +91,6 @@ void undistortImage(InputArray src, OutputArray dst, const Ptr<RefractiveCamera>
         remap(image, corrected, map1, map2, INTER_LINEAR, BORDER_CONSTANT);
     }
     corrected.copyTo(dst);
-}
-
-} // namespace
-
-void refractiveUndistortImage(InputArray src, OutputArray dst, const Ptr<RefractiveCamera>& camera, double depth,
-                              InputArray newCameraMatrix)
-{
-    CV_INSTRUMENT_REGION();
-
-    undistortImage(src, dst, camera, depth, newCameraMatrix);
-}
-
-void refractiveUndistortImage(InputArray src, OutputArray dst, const Ptr<RefractiveCamera>& camera, InputArray depth,
-                              InputArray newCameraMatrix)
-{
-    CV_INSTRUMENT_REGION();
-
-    undistortImage(src, dst, camera, depth, newCameraMatrix);
-}
-
-void refractiveUndistortImage(InputArray src, OutputArray dst, InputArray cameraMatrix, InputArray distCoeffs,
-                              const GlassWindow& window, double depth, InputArray newCameraMatrix)
-{
-    refractiveUndistortImage(src, dst, RefractiveCamera::create(cameraMatrix, distCoeffs, window), depth, newCameraMatrix);
 }
 
 void refractiveUndistortImage(InputArray src, OutputArray dst, InputArray cameraMatrix, InputArray distCoeffs,

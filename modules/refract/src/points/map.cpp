@@ -20,11 +20,6 @@ Vec4d scenePlane(InputArray depth, bool isNeeded, const char* name)
     return plane[3] == -infinity ? -plane : plane;
 }
 
-Vec4d scenePlane(double depth, bool isNeeded, const char* name)
-{
-    return planeOfDepth(DepthReader(depth, name, isNeeded).at(0), name);
-}
-
 Matx33d inverseCameraMatrix(const Matx33d& K, const char* name)
 {
     if (determinant(K) == 0)
@@ -40,15 +35,6 @@ static PinholeView centralView(const Camera& cam, const Vec4d& plane, InputArray
     return { cam, readRotationOrNone(R, "R").t()*inverseCameraMatrix(K, "newCameraMatrix"), Vec3d(), plane };
 }
 
-void initRefractiveUndistortRectifyMap(const Ptr<RefractiveCamera>& camera, double depth, InputArray R,
-                                       InputArray newCameraMatrix, Size size, int m1type, OutputArray map1, OutputArray map2)
-{
-    CV_INSTRUMENT_REGION();
-
-    const Camera& cam = cameraOf(camera);
-    mapPlane(centralView(cam, scenePlane(depth, cam.refracts(), "depth"), R, newCameraMatrix), size, m1type, map1, map2);
-}
-
 void initRefractiveUndistortRectifyMap(const Ptr<RefractiveCamera>& camera, InputArray depth, InputArray R,
                                        InputArray newCameraMatrix, Size size, int m1type, OutputArray map1, OutputArray map2)
 {
@@ -56,14 +42,6 @@ void initRefractiveUndistortRectifyMap(const Ptr<RefractiveCamera>& camera, Inpu
 
     const Camera& cam = cameraOf(camera);
     mapPlane(centralView(cam, scenePlane(depth, cam.refracts(), "depth"), R, newCameraMatrix), size, m1type, map1, map2);
-}
-
-void initRefractiveUndistortRectifyMap(InputArray cameraMatrix, InputArray distCoeffs, const GlassWindow& window,
-                                       double depth, InputArray R, InputArray newCameraMatrix, Size size,
-                                       int m1type, OutputArray map1, OutputArray map2)
-{
-    initRefractiveUndistortRectifyMap(RefractiveCamera::create(cameraMatrix, distCoeffs, window), depth, R,
-                                      newCameraMatrix, size, m1type, map1, map2);
 }
 
 void initRefractiveUndistortRectifyMap(InputArray cameraMatrix, InputArray distCoeffs, const GlassWindow& window,

@@ -34,7 +34,6 @@ void mapSurface(const PinholeView& view, const PlaneReader& planeD, Size size, i
 
 //! The scene of a map: one number z, or four numbers of a plane.
 Vec4d scenePlane(InputArray depth, bool isNeeded, const char* name);
-Vec4d scenePlane(double depth, bool isNeeded, const char* name);
 
 //! No window and a lens of OpenCV: calib3d's own case.
 inline bool isPlainOpenCV(const Camera& camera) { return !camera.refracts() && camera.lensModel() == "opencv"; }

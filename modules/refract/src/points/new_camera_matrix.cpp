@@ -67,16 +67,6 @@ Mat newCameraMatrix(const Camera& camera, const Vec4d& plane, Size imageSize, do
 
 } // namespace
 
-Mat getOptimalNewRefractiveCameraMatrix(const Ptr<RefractiveCamera>& camera, double depth, Size imageSize, double alpha,
-                                        Size newImageSize, Rect* validPixROI, bool centerPrincipalPoint)
-{
-    CV_INSTRUMENT_REGION();
-
-    const Camera& cam = cameraOf(camera);
-    return newCameraMatrix(cam, scenePlane(depth, cam.refracts(), "depth"), imageSize, alpha, newImageSize, validPixROI,
-                           centerPrincipalPoint);
-}
-
 Mat getOptimalNewRefractiveCameraMatrix(const Ptr<RefractiveCamera>& camera, InputArray depth, Size imageSize, double alpha,
                                         Size newImageSize, Rect* validPixROI, bool centerPrincipalPoint)
 {
@@ -85,14 +75,6 @@ Mat getOptimalNewRefractiveCameraMatrix(const Ptr<RefractiveCamera>& camera, Inp
     const Camera& cam = cameraOf(camera);
     return newCameraMatrix(cam, scenePlane(depth, cam.refracts(), "depth"), imageSize, alpha, newImageSize, validPixROI,
                            centerPrincipalPoint);
-}
-
-Mat getOptimalNewRefractiveCameraMatrix(InputArray cameraMatrix, InputArray distCoeffs, const GlassWindow& window, double depth,
-                                        Size imageSize, double alpha, Size newImageSize, Rect* validPixROI,
-                                        bool centerPrincipalPoint)
-{
-    return getOptimalNewRefractiveCameraMatrix(RefractiveCamera::create(cameraMatrix, distCoeffs, window), depth, imageSize, alpha,
-                                               newImageSize, validPixROI, centerPrincipalPoint);
 }
 
 Mat getOptimalNewRefractiveCameraMatrix(InputArray cameraMatrix, InputArray distCoeffs, const GlassWindow& window, InputArray depth,

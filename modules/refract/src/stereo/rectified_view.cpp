@@ -39,32 +39,14 @@ static void checkPinhole(const Camera& camera, const Vec3d& centre, const Vec3d&
                                      range[0], range[1]));
 }
 
-RectifiedView::RectifiedView(const Camera& camera, InputArray R, InputArray P, InputArray T, const Names& names)
+RectifiedView::RectifiedView(const Camera& camera, InputArray R, InputArray P, InputArray T, InputArray depth, Size size,
+                             const Names& names)
     : R_(readRotation(R, names.R)), projection_(P, names.P), T_(T.empty() ? Vec3d() : readVec3(T, "T")), shift_(0),
       pinhole_({ camera, Matx33d(), Vec3d(), Vec4d() })
 {
     pinhole_.newToCamera = R_.t()*projection_.inverseK;
     pinhole_.centre = R_.t()*projection_.centre + T_;
     checkPinhole(camera, pinhole_.centre, T_, names.P);
-}
-
-void RectifiedView::see(const Vec4d& plane)
-{
-    const Vec3d normal = R_.t()*Vec3d(plane[0], plane[1], plane[2]);
-    shift_ = normal.dot(T_);
-    pinhole_.plane = Vec4d(normal[0], normal[1], normal[2], plane[3] + shift_);
-}
-
-RectifiedView::RectifiedView(const Camera& camera, InputArray R, InputArray P, InputArray T, double depth, const Names& names)
-    : RectifiedView(camera, R, P, T, names)
-{
-    see(scenePlane(depth, camera.refracts(), names.depth));
-}
-
-RectifiedView::RectifiedView(const Camera& camera, InputArray R, InputArray P, InputArray T, InputArray depth, Size size,
-                             const Names& names)
-    : RectifiedView(camera, R, P, T, names)
-{
     const bool isImage = !depth.empty() && depth.size() == size && depth.channels() == 1 && size.area() > 1;
     see(isImage ? Vec4d(0, 0, 1, 0) : planeOf(depth, size, camera.refracts(), names.depth));
     if (!isImage)
@@ -72,6 +54,13 @@ RectifiedView::RectifiedView(const Camera& camera, InputArray R, InputArray P, I
     depths_ = depth.getMat();
     if (depths_.depth() != CV_32F && depths_.depth() != CV_64F)
         depths_.convertTo(depths_, CV_64F);
+}
+
+void RectifiedView::see(const Vec4d& plane)
+{
+    const Vec3d normal = R_.t()*Vec3d(plane[0], plane[1], plane[2]);
+    shift_ = normal.dot(T_);
+    pinhole_.plane = Vec4d(normal[0], normal[1], normal[2], plane[3] + shift_);
 }
 
 void RectifiedView::load(int row, int column, int n, double* planeD) const
@@ -115,22 +104,6 @@ void checkRectification(const Matx33d& R1, const Matx33d& R2, const Matx33d& R)
     const double difference = norm(R2*R - R1, NORM_INF);
     if (difference > 1e-6)
         CV_Error_(Error::StsBadArg, ("R1, R2 and R do not belong together: R2*R differs from R1 by %g", difference));
-}
-
-void initRefractiveStereoRectifyMap(const Ptr<RefractiveCamera>& camera, double depth, InputArray R, InputArray P,
-                                    InputArray T, Size size, int m1type, OutputArray map1, OutputArray map2)
-{
-    CV_INSTRUMENT_REGION();
-
-    mapPlane(RectifiedView(cameraOf(camera), R, P, T, depth, { "R", "P", "depth" }).pinhole(), size, m1type, map1, map2);
-}
-
-void initRefractiveStereoRectifyMap(InputArray cameraMatrix, InputArray distCoeffs, const GlassWindow& window,
-                                    double depth, InputArray R, InputArray P, InputArray T, Size size, int m1type,
-                                    OutputArray map1, OutputArray map2)
-{
-    initRefractiveStereoRectifyMap(RefractiveCamera::create(cameraMatrix, distCoeffs, window), depth, R, P, T, size, m1type,
-                                   map1, map2);
 }
 
 void initRefractiveStereoRectifyMap(const Ptr<RefractiveCamera>& camera, InputArray depth, InputArray R, InputArray P,

@@ -27,8 +27,6 @@ public:
     @param depth z, a plane (a, b, c, d) of the rectified frame, or z of each pixel
     @param size of the rectified image */
     RectifiedView(const Camera& camera, InputArray R, InputArray P, InputArray T, InputArray depth, Size size, const Names& names);
-    //! The same of the plane z = depth.
-    RectifiedView(const Camera& camera, InputArray R, InputArray P, InputArray T, double depth, const Names& names);
 
     const PinholeView& pinhole() const { return pinhole_; }
     //! Each pixel has a depth of its own; else pinhole().plane is what it shows.
@@ -42,7 +40,6 @@ public:
     const RectifiedProjection& projection() const { return projection_; }
 
 private:
-    RectifiedView(const Camera& camera, InputArray R, InputArray P, InputArray T, const Names& names);
     void see(const Vec4d& plane);       //!< of the rectified frame
 
     Matx33d R_;
