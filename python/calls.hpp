@@ -206,27 +206,45 @@ static bool fits(const Form& form, PyObject* args, PyObject* keywords, String* w
     return true;
 }
 
-//! An exception as those of C++: attributes of the exception itself, and a text without paths of the machine that compiled it.
-static void raise(const String& text, int code = Error::StsBadArg, const String& file = String(), const String& function = String(),
-                  int line = 0)
+//! @param attributes of the exception: a dictionary, or NULL where it could not be made
+static bool setAttributes(PyObject* error, PyObject* attributes)
 {
-    PySafeObject message(PyUnicode_DecodeUTF8(text.c_str(), (Py_ssize_t)text.size(), "replace"));
-    PySafeObject error(message ? PyObject_CallFunctionObjArgs(opencv_error, (PyObject*)message, NULL) : NULL);
-    PySafeObject attributes(error ? Py_BuildValue("{s:s,s:s,s:i,s:i,s:O,s:O}", "file", file.c_str(), "func", function.c_str(), "line",
-                                                  line, "code", code, "err", (PyObject*)message, "msg", (PyObject*)message) : NULL);
-    if (!attributes)
-        return;
     PyObject *key, *value;
-    for (Py_ssize_t next = 0; PyDict_Next(attributes, &next, &key, &value);)
+    for (Py_ssize_t next = 0; attributes && PyDict_Next(attributes, &next, &key, &value);)
         if (PyObject_SetAttr(error, key, value) != 0)
-            return;
+            return false;
+    return attributes != NULL;
+}
+
+//! Members of CalibrationError; a cause by its name.
+static PyObject* attributesOf(const refract::CalibrationError& e)
+{
+    static const char* const CAUSES[] = { "NOT_CONVERGED", "UNDETERMINED", "POSE_UNDETERMINED", "TOO_FEW_INLIERS", "TOO_FEW_POINTS",
+                                          "NO_SCALE", "NO_POSE", "NO_IMAGE", "WINDOW_NOT_SEEN", "LOOKS_AWAY", "BEYOND_WINDOW",
+                                          "PAIRS_SWAPPED", "PAIRS_CONTRADICT" };
+    static_assert(sizeof(CAUSES)/sizeof(CAUSES[0]) == refract::CalibrationError::PAIRS_CONTRADICT + 1, "a name for each");
+    return Py_BuildValue("{s:s,s:s,s:i,s:i,s:i}", "cause", CAUSES[e.cause], "reason", e.reason.c_str(), "view", e.view, "camera", e.camera,
+                         "point", e.point);
+}
+
+//! An exception as those of C++: attributes of the exception itself, and a text without paths of the machine that compiled it.
+static void raise(const Exception& e)
+{
+    PySafeObject message(PyUnicode_DecodeUTF8(e.err.c_str(), (Py_ssize_t)e.err.size(), "replace"));
+    PySafeObject error(message ? PyObject_CallFunctionObjArgs(opencv_error, (PyObject*)message, NULL) : NULL);
+    const String file = e.file.substr(e.file.find_last_of("/\\") + 1);
+    PySafeObject attributes(error ? Py_BuildValue("{s:s,s:s,s:i,s:i,s:O,s:O}", "file", file.c_str(), "func", e.func.c_str(), "line", e.line,
+                                                  "code", e.code, "err", (PyObject*)message, "msg", (PyObject*)message) : NULL);
+    if (!setAttributes(error, attributes))
+        return;
+    const refract::CalibrationError* const ofCalibration = dynamic_cast<const refract::CalibrationError*>(&e);
+    PySafeObject more(ofCalibration ? attributesOf(*ofCalibration) : NULL);
+    if (ofCalibration && !setAttributes(error, more))
+        return;
     PyErr_SetObject(opencv_error, error);
 }
 
-static void raise(const Exception& e)
-{
-    raise(e.err, e.code, e.file.substr(e.file.find_last_of("/\\") + 1), e.func, e.line);
-}
+static void raise(const String& text, int code = Error::StsBadArg) { raise(Exception(code, text, "", "", 0)); }
 
 //! What conversions raise becomes the one class for wrong arguments, with the name of the call.
 static void blame(const char* name)

@@ -44,6 +44,12 @@ class error(Exception):
     func: str
     file: str
     line: int
+    # Of data without an answer, as CalibrationError in C++:
+    cause: str
+    reason: str
+    view: int
+    camera: int
+    point: int
 
 '''
 WINDOW = '''    def __init__(self, normal: Numbers = ..., thickness: Number | Numbers = ..., index: Number | Numbers = ...,

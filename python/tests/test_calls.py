@@ -382,8 +382,13 @@ def test_bundle_adjust(rig):
 
 def test_swapped_pairs_are_refused(rig, board):
     start = refract.GlassWindow((0., 0., 1.), 20., 1.5437, 50.)
-    with pytest.raises(refract.error, match="swapped"):
+    with pytest.raises(refract.error, match="swapped") as caught:
         refract.calibrateGlass(board.target, board.glass1, board.direct1, rig.K1, rig.D1, start)
+    assert caught.value.cause == "PAIRS_SWAPPED" and caught.value.reason in caught.value.err
+    assert caught.value.view == caught.value.camera == caught.value.point == -1
+    with pytest.raises(refract.error) as caught:
+        refract.calibrateGlass(board.target, board.glass1, board.direct1, rig.K1, rig.D1, "window")
+    assert not hasattr(caught.value, "cause")
 
 
 def test_four_points_take_a_number_but_no_guess(rig):
