@@ -98,7 +98,7 @@ TEST_CASE("What is wrong with a command line is one sentence", "[options]")
         {{"a", "--share=1.1"}, "from 0 to 1"}, {{"a", "--count=4"}, "--count"}, {{"a", "--count=1.5"}, "--count"},
         {{"a", "--quick", "--alone=1"}, "excludes"}, {{"a", "--two=2"}, "requires --quick"}, {{"a", "--length"}, "--length"},
         {{"--lenght=1"}, "there is no option --lenght=1"}, {{"a", "--left4=b"}, "there is no option --left4"},
-        {{"a", "--left1=b"}, "there is no option --left1"}, {{"a", "--left2"}, "--left2: 1 required TEXT missing"},
+        {{"a", "--left0=b"}, "there is no option --left0"}, {{"a", "--left2"}, "--left2: 1 required TEXT missing"},
         {{"a", "--left", "--quick"}, "--left: 1 required TEXT missing"}, {{"a", "--left2=b"}, "--left2 requires --right2"},
         {{"a", "--left=b", "--left=c", "--left2=d"}, "--left2 is given twice"},
         {{"a", "--left=b", "--left=c", "--left=d", "--left=e"}, "--left is given more than 3 times"}};
@@ -125,6 +125,8 @@ TEST_CASE("An option for each camera is said once for each, or with a camera's n
     CHECK(left(with({"--left=b", "--left", "c", "--left=d=e"})) == Said{"b", "c", "d=e"});
     CHECK(left(with({"--left2", "c", "--left=b"})) == Said{"b", "c", ""});
     CHECK(left(with({"--left3=d"})) == Said{"", "", "d"});
+    CHECK(left(with({"--left2=c", "--left1=b"})) == Said{"b", "c", ""});
+    CHECK_THROWS_WITH(left(with({"--left1=b", "--left=c"})), Catch::Contains("--left is given twice"));
     CHECK(left(with({"--left3=-d", "--left=[b]", "--", "--left=e"})) == Said{"[b]", "", "-d"});     // behind -- are no options
     // Of a file of settings what the command line does not say.
     const TemporaryFolder folder;

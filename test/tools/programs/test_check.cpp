@@ -4,6 +4,7 @@
 // refract_check as a user runs it: on the bundled images, whose truth is known.
 #include "run_tool.hpp"
 #include "paths.hpp"
+#include "scenes.hpp"
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 #include <opencv2/calib3d.hpp>
@@ -12,6 +13,9 @@
 #include <cerrno>
 #include <cmath>
 #include <cstring>
+#include <fstream>
+#include <iomanip>
+#include <iostream>
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -213,6 +217,44 @@ TEST_CASE("A verdict has a colour on a terminal alone", "[tools][check]")
         CHECK(!mentions(text, terminal.unwanted));
     }
     CHECK(!mentions(runTool("refract_check " + folder / "same.yml" + arguments, "env -u NO_COLOR TERM=xterm").out, "\033"));
+}
+
+TEST_CASE("Point files bring their target along", "[tools][check]")
+{
+    const TemporaryFolder folder;
+    std::cout << "seed " << scenes::seed() << '\n';
+    scenes::Random random(4400);
+    std::vector<cv::Point3d> target;
+    for (int i = 0; i < 30; i++)
+        target.push_back(cv::Point3d(39.*(i % 6), 39.*(i/6), 0));
+    const auto writePoints = [&](const std::string& calibration) {
+        const auto camera = cv::refract::RefractiveCamera::read(calibration, "camera1");
+        std::ofstream csv(folder / "points.csv");
+        csv << std::setprecision(10) << "view,x,y,z,u,v\n";
+        for (int view = 0; view < 8; view++)
+        {
+            std::vector<cv::Point2d> pixels;
+            cv::refract::refractiveProjectPoints(target, random.vector(0.3), cv::Vec3d(-97, -78, 750) + random.vector(20), camera,
+                                                pixels);
+            for (size_t i = 0; i < target.size(); i++)
+                csv << view << "," << target[i].x << "," << target[i].y << ",0," << pixels[i].x + random.normal(0.05) << ","
+                    << pixels[i].y + random.normal(0.05) << "\n";
+        }
+    };
+    writeCalibration(folder / "same.yml", 0.);
+    writeChanged(folder / "other.yml", 0., 1.02);
+    const std::string check = "refract_check " + folder / "same.yml" + " --pixel-sigma=0.05 --detect=3 --glass=";
+    writePoints(folder / "same.yml");
+    const ToolResult same = runTool(check + folder / "points.csv");
+    INFO(same.out << same.err);
+    CHECK(same.code == 0);
+    writePoints(folder / "other.yml");
+    const ToolResult other = runTool(check + folder / "points.csv");
+    INFO(other.out << other.err);
+    CHECK(other.code == 2);
+    const ToolResult images = runTool(check + STEREO + "/glass1/pair1.jpg");
+    CHECK(images.code == 1);
+    CHECK(mentions(images.err, "give --size and --square"));
 }
 
 TEST_CASE("refract_check says when it cannot tell, and why", "[tools][check]")

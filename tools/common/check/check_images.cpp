@@ -13,6 +13,7 @@
 #include "match/scene_matches.hpp"
 #include <algorithm>
 #include <filesystem>
+#include <memory>
 
 using namespace cv::refract;
 
@@ -32,17 +33,10 @@ double usualPlacementOf(const Calibration& calibration)
 //! Of a target or of a scene, as the options say it together.
 void requireOneKind(const CheckOptions& o)
 {
-    const auto require = [](bool isGiven, const char* option) {
-        if (!isGiven)
-            throw Failure(std::string(option) + " is required, or --scene with images of all cameras; see --help");
-    };
-    if (!o.isOfScene())
-    {
-        require(!o.images.glass[0].empty(), "--glass");
-        require(o.target.given(), "--size");
-        require(!o.target.dots.empty() || o.target.square > 0., "--square");
+    if (!o.isOfScene() && o.images.glass[0].empty())
+        throw Failure("--glass is required, or --scene with images of all cameras; see --help");
+    if (!o.isOfScene())         // what images without --size are of, whoever reads them asks
         return;
-    }
     if (o.images.cameraCount() > 0 || o.target.given() || o.placement > 0.)
         throw Failure("--scene is without a target: leave --direct, --glass, --size, --square and --placement-std out");
 }
@@ -115,14 +109,14 @@ void warnNotFound(const RigImages& sets, const Command& command)
 
 CheckImages readViews(const CheckOptions& o, const Calibration& calibration, const Command& command)
 {
-    const Target target(o.target);
+    const std::unique_ptr<const Target> target(o.target.given() ? new Target(o.target) : nullptr);
     const int count = (int)calibration.cameras.size(), given = o.images.cameraCount();
     if (given > count)
         throw Failure(format("'%s' has %d camera%s: leave --glass%d out", o.calibration.c_str(), count, count == 1 ? "" : "s", given));
     PerCamera<cv::Size> sizes;
     for (size_t c = 0; c < calibration.cameras.size(); c++)
         sizes[c] = o.imageSize.empty() ? calibration.cameras[c].camera->imageSize() : parseSize(o.imageSize, "--image-size");
-    RigImages sets = readRigImages(o.images, &target, sizes, command.quiet());
+    RigImages sets = readRigImages(o.images, target.get(), sizes, command.quiet());
     sets.nameSingles();
     requirePairs(o, sets, command);
     warnNotFound(sets, command);
@@ -131,7 +125,7 @@ CheckImages readViews(const CheckOptions& o, const Calibration& calibration, con
         result.files.insert(result.files.end(), set->files.begin(), set->files.end());
     for (const UsedImage& image : usedImages(sets))
         result.shown.push_back(image.image);
-    for (const View& view : groupIntoViews(&target, sets, false).views)
+    for (const View& view : groupIntoViews(target.get(), sets, false).views)
         if (view.hasGlass())
             result.views.push_back(view);
     return result;

@@ -24,7 +24,7 @@ std::string OptionNames::nameOfEach(const std::string& name) const
 {
     for (const auto& option : ofEach_)
         for (size_t at = 0; at < option.second.count; at++)
-            if (name == numberedName(option.first, at))
+            if (name == numberedName(option.first, at) || name == option.first + "1")
                 return option.first;
     return "";
 }
