@@ -8,8 +8,8 @@
 #include "calibrate/bundle_search.hpp"
 #include "calibrate/near_task.hpp"
 #include "adjust/covariance.hpp"
+#include "adjust/joint_fit.hpp"
 #include "adjust/ray_midpoints.hpp"
-#include "adjust/robust_fit.hpp"
 #include <opencv2/core/eigen.hpp>
 
 namespace cv { namespace refract {
@@ -30,7 +30,7 @@ FitOutcome adjust(Problem& problem, const BundleTask& task)
     outcome = outliers.checkWhatIsLeft();
     if (!outcome.converged())
         return outcome;
-    RobustFit fit(problem, outliers, isRobust, problem.pointCount(), criteria), another = fit;
+    JointFit fit(problem, outliers, isRobust, problem.pointCount(), criteria), another = fit;
     if (isRobust)
         return searchRobustBundle(problem, outliers, fit, another);
     return searchBundle(problem, outliers, fit, another);

@@ -75,7 +75,7 @@ int countFinite(const std::vector<Point3d>& points)
 }
 
 //! With outliers all are used, as none is known to be right.
-void useWhatTells(Problem& problem, const std::vector<Point3d>& points, const RobustFit& fit)
+void useWhatTells(Problem& problem, const std::vector<Point3d>& points, const JointFit& fit)
 {
     problem.setPoints(points, Masks());
     if (!fit.isRobust())
@@ -118,7 +118,7 @@ int usePointsOfOneMinimum(Problem& problem, const SceneOutliers& outliers, std::
 @param step what is done without them
 @return how many points the others are; 0: nothing was done */
 template<class Step>
-int decideByPointsOfOneMinimum(Problem& problem, const SceneOutliers& outliers, const RobustFit& fit, Step step)
+int decideByPointsOfOneMinimum(Problem& problem, const SceneOutliers& outliers, const JointFit& fit, Step step)
 {
     std::vector<Point3d> all;
     const int count = usePointsOfOneMinimum(problem, outliers, all);
@@ -134,7 +134,7 @@ int decideByPointsOfOneMinimum(Problem& problem, const SceneOutliers& outliers, 
 }
 
 //! From where the start is.
-FitOutcome approach(Problem& problem, const SceneOutliers& outliers, RobustFit& fit)
+FitOutcome approach(Problem& problem, const SceneOutliers& outliers, JointFit& fit)
 {
     for (int used = 0, before = -1; used > before; )
     {
@@ -155,7 +155,7 @@ FitOutcome approach(Problem& problem, const SceneOutliers& outliers, RobustFit& 
     return outcome;
 }
 
-FitOutcome run(Problem& problem, RobustFit& fit)
+FitOutcome run(Problem& problem, JointFit& fit)
 {
     FitOutcome outcome = fit.run();
     for (int round = 0; round < ROUNDS && outcome.isUsable() && moveToLeastMinima(problem); round++)
@@ -165,7 +165,7 @@ FitOutcome run(Problem& problem, RobustFit& fit)
 
 /** What hardly tells a minimum from another may have chosen the wrong one, and the cameras follow. Without it, they may not.
 @return converged if that was better */
-FitOutcome runByPointsOfOneMinimum(Problem& problem, const SceneOutliers& outliers, RobustFit& fit)
+FitOutcome runByPointsOfOneMinimum(Problem& problem, const SceneOutliers& outliers, JointFit& fit)
 {
     const Snapshot before(problem);
     const double variance = varianceOf(problem);
@@ -182,7 +182,7 @@ FitOutcome runByPointsOfOneMinimum(Problem& problem, const SceneOutliers& outlie
 
 /** With points that tell nothing of the cameras, and without those that may as well be where another minimum is: they would be stated as if
 they were known, and drag cameras along. */
-FitOutcome runWithWhatIsDecided(Problem& problem, const SceneOutliers& outliers, RobustFit& fit, const FitOutcome& outcome)
+FitOutcome runWithWhatIsDecided(Problem& problem, const SceneOutliers& outliers, JointFit& fit, const FitOutcome& outcome)
 {
     const int telling = countFinite(problem.scene().points());
     problem.setPoints(startPoints(problem, problem.scene().points()), Masks());
@@ -196,7 +196,7 @@ FitOutcome runWithWhatIsDecided(Problem& problem, const SceneOutliers& outliers,
     return outcome;
 }
 
-FitOutcome approachAndRun(Problem& problem, const SceneOutliers& outliers, RobustFit& fit)
+FitOutcome approachAndRun(Problem& problem, const SceneOutliers& outliers, JointFit& fit)
 {
     // Normals, R and T, poses and points first: while they are far off, distances and lenses would run away along what makes up
     // for them, into other minima.
@@ -258,7 +258,7 @@ double truncatedSquares(const Problem& problem, double variance)
     return problem.squaredError()/variance + CUT*CUT*left;
 }
 
-FitOutcome searchFromStart(Problem& problem, const SceneOutliers& outliers, RobustFit& fit)
+FitOutcome searchFromStart(Problem& problem, const SceneOutliers& outliers, JointFit& fit)
 {
     useWhatTells(problem, problem.scene().points(), fit);
     const FitOutcome outcome = approachAndRun(problem, outliers, fit);
@@ -268,7 +268,7 @@ FitOutcome searchFromStart(Problem& problem, const SceneOutliers& outliers, Robu
 
 } // namespace
 
-FitOutcome searchBundle(Problem& problem, const SceneOutliers& outliers, RobustFit& fit, RobustFit& another)
+FitOutcome searchBundle(Problem& problem, const SceneOutliers& outliers, JointFit& fit, JointFit& another)
 {
     const double MOST = 0.9;            // of the equations: few are easily fitted
     const bool mayBeElsewhere = problem.scene().lengthCount() > 0 && areRaysParallel(problem);
@@ -288,7 +288,7 @@ FitOutcome searchBundle(Problem& problem, const SceneOutliers& outliers, RobustF
     return outcome;
 }
 
-FitOutcome searchRobustBundle(Problem& problem, const SceneOutliers& outliers, RobustFit& fit, RobustFit& another)
+FitOutcome searchRobustBundle(Problem& problem, const SceneOutliers& outliers, JointFit& fit, JointFit& another)
 {
     const Snapshot start(problem);
     const Rig rig = problem.rig();

@@ -4,7 +4,7 @@
 
 #include "calibrate/rig_fit.hpp"
 #include "adjust/covariance.hpp"
-#include "adjust/robust_fit.hpp"
+#include "adjust/joint_fit.hpp"
 #include "arrays/arrays.hpp"
 #include "start/incremental_start.hpp"
 #include "start/inliers.hpp"
@@ -263,7 +263,7 @@ static FitOutcome fitSeen(Rig& rig, const RigTask& given, RigFit& fit)
     if (!task.isRobust())
         outcome = checkFreedom(problem);
     if (outcome.converged())
-        outcome = RobustFit(problem, outliers, task.isRobust(), seenCount(given.views), criteria).run();
+        outcome = JointFit(problem, outliers, task.isRobust(), seenCount(given.views), criteria).run();
     if (outcome.isUsable())
     {
         const FitOutcome left = checkFreedom(problem);

@@ -15,7 +15,7 @@
 An outlier drags a point that is not known along, and all its other observations look wrong. So of one point, and of those that
 are tied to it, only the worst goes at a time, with those that cannot be told apart from it. */
 
-#include "adjust/robust_fit.hpp"
+#include "adjust/joint_fit.hpp"
 #include "adjust/deletion.hpp"
 #include "adjust/minimize.hpp"
 #include "math/robust_scale.hpp"
@@ -26,11 +26,11 @@ namespace cv { namespace refract {
 // px, a numerical floor: without it, what is known would lose all weight where data are perfect.
 static const double LEAST_PIXEL_SIGMA = 1e-3;
 
-RobustFit::RobustFit(Problem& problem, Outliers& outliers, bool isRobust, int seenCount, const TermCriteria& criteria)
+JointFit::JointFit(Problem& problem, Outliers& outliers, bool isRobust, int seenCount, const TermCriteria& criteria)
     : problem_(problem), outliers_(outliers), isRobust_(isRobust), seenCount_(seenCount), criteria_(criteria), scale_(0),
       damping_(FIRST_DAMPING) {}
 
-FitOutcome RobustFit::run()
+FitOutcome JointFit::run()
 {
     const int ROUNDS = 20;
     FitOutcome outcome;
@@ -50,7 +50,7 @@ FitOutcome RobustFit::run()
     return outcome;
 }
 
-FitOutcome RobustFit::approach()
+FitOutcome JointFit::approach()
 {
     const double LEAST_GAIN = 1e-6;
     const TermCriteria few(TermCriteria::COUNT + TermCriteria::EPS, 20, LEAST_GAIN);
@@ -58,7 +58,7 @@ FitOutcome RobustFit::approach()
 }
 
 //! Distances of predicted from observed pixels, of candidates; of halves as large as those of whole pixels usually are.
-std::vector<std::vector<double> > RobustFit::errors() const
+std::vector<std::vector<double> > JointFit::errors() const
 {
     const double HALF = std::sqrt(std::log(4.))/0.6744898;      // between the medians of two coordinates' length and of one's
     std::vector<std::vector<double> > all;
@@ -75,13 +75,13 @@ std::vector<std::vector<double> > RobustFit::errors() const
 }
 
 //! By how much errors are larger than the residuals, of which parameters, poses and points absorb a part.
-double RobustFit::absorbed() const
+double JointFit::absorbed() const
 {
     return std::sqrt(problem_.equationCount()/std::max((double)problem_.freedom(), 1.));
 }
 
 //! Each image's own scale, but no more than a few times that of the median image of its kind.
-std::vector<double> RobustFit::imageScales(const std::vector<std::vector<double> >& errors) const
+std::vector<double> JointFit::imageScales(const std::vector<std::vector<double> >& errors) const
 {
     const double MOST = 3, absorbed = this->absorbed();
     std::vector<double> scales, ofKind[2];
@@ -107,7 +107,7 @@ static double medianScale(const std::vector<double>& scales, const std::vector<s
     return median(some);
 }
 
-FitOutcome RobustFit::reweightGradually()
+FitOutcome JointFit::reweightGradually()
 {
     const int ROUNDS = 30;
     const double LEAST_GAIN = 1e-3;         // of a scene: then weights change more than steps do
@@ -141,7 +141,7 @@ FitOutcome RobustFit::reweightGradually()
 }
 
 //! From all images.
-void RobustFit::estimateScale()
+void JointFit::estimateScale()
 {
     std::vector<double> all, scales;
     for (const std::vector<double>& ofImage : errors())
@@ -154,7 +154,7 @@ void RobustFit::estimateScale()
 }
 
 //! Before leverages are known.
-Masks RobustFit::smallErrors() const
+Masks JointFit::smallErrors() const
 {
     Masks inliers = outliers_.candidates();
     const std::vector<std::vector<double> > errors = problem_.pixelErrors();
@@ -193,7 +193,7 @@ std::vector<double> worstNearby(const Problem& problem, const Masks& inliers, co
 } // namespace
 
 //! By deletion residuals. What leaves a second time has left for good, so that this comes to an end.
-Masks RobustFit::chooseInliers()
+Masks JointFit::chooseInliers()
 {
     const std::vector<std::vector<DeletionResidual> > residuals = deletionResiduals(problem_, inliers_, outliers_.candidates());
     std::vector<double> variances;
@@ -229,7 +229,7 @@ Masks RobustFit::chooseInliers()
     return chosen;
 }
 
-FitOutcome RobustFit::checkMajority(int count) const
+FitOutcome JointFit::checkMajority(int count) const
 {
     FitOutcome outcome(2*count < seenCount_ ? FitOutcome::TOO_FEW_INLIERS : FitOutcome::CONVERGED);
     outcome.count = count;
@@ -237,7 +237,7 @@ FitOutcome RobustFit::checkMajority(int count) const
     return outcome;
 }
 
-FitOutcome RobustFit::solveAndScale()
+FitOutcome JointFit::solveAndScale()
 {
     FitOutcome outcome = checkMajority(problem_.pointCount());
     if (!outcome.converged())
@@ -249,7 +249,7 @@ FitOutcome RobustFit::solveAndScale()
 }
 
 //! Decides until the same observations stay.
-FitOutcome RobustFit::rejectUntilStable()
+FitOutcome JointFit::rejectUntilStable()
 {
     const int ROUNDS = 30;
     FitOutcome outcome = solveAndScale();
@@ -269,7 +269,7 @@ FitOutcome RobustFit::rejectUntilStable()
     return outcome;
 }
 
-FitOutcome RobustFit::chooseFirstInliers()
+FitOutcome JointFit::chooseFirstInliers()
 {
     int inImages = 0;
     for (const Image& image : images())
@@ -289,7 +289,7 @@ FitOutcome RobustFit::chooseFirstInliers()
     return outcome;
 }
 
-FitOutcome RobustFit::rejectOutliers()
+FitOutcome JointFit::rejectOutliers()
 {
     FitOutcome outcome;
     if (scale_ == 0)

@@ -2,8 +2,8 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#ifndef OPENCV_REFRACT_ROBUST_FIT_HPP
-#define OPENCV_REFRACT_ROBUST_FIT_HPP
+#ifndef OPENCV_REFRACT_JOINT_FIT_HPP
+#define OPENCV_REFRACT_JOINT_FIT_HPP
 
 #include "adjust/outliers.hpp"
 
@@ -11,11 +11,11 @@ namespace cv { namespace refract {
 
 /** One fit, with outliers left out where it is robust; where priors are weighed against the pixels' noise, repeated until that is
 the noise that the fit finds. */
-class RobustFit
+class JointFit
 {
 public:
     //! @param seenCount observations that the caller gave
-    RobustFit(Problem& problem, Outliers& outliers, bool isRobust, int seenCount, const TermCriteria& criteria);
+    JointFit(Problem& problem, Outliers& outliers, bool isRobust, int seenCount, const TermCriteria& criteria);
 
     bool isRobust() const { return isRobust_; }
     FitOutcome run();
@@ -51,4 +51,4 @@ private:
 
 }} // namespace
 
-#endif // OPENCV_REFRACT_ROBUST_FIT_HPP
+#endif // OPENCV_REFRACT_JOINT_FIT_HPP
