@@ -19,8 +19,8 @@ struct Covariance
     @param required what must be determined by itself, GLASS_REQUIRE_...; of the rest it is enough that combinations are */
     FitOutcome compute(const Problem& problem, double variance, int required);
 
-    /** Where a distance that is free is known less well than its derivatives say (distance_profile.hpp), wider; of the problem that it was
-    computed of, which stays as it is. */
+    /** Wider where a free distance, or a dome's centre, is known less well than its derivatives say (distance_profile.hpp). @param problem
+    it was computed of; stays as it is */
     void widen(Problem& problem);
 
     //! Memory that those of poses and points take.
