@@ -7,6 +7,7 @@
 
 #include "assess/rig_calibration.hpp"
 #include "calibrate/fit.hpp"
+#include "calibrate/priors.hpp"
 #include "paper_rig.hpp"
 
 //! Fitted from the rig itself, which knows all that is given; lengths in mm.

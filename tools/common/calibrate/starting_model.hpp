@@ -50,15 +50,11 @@ struct LensSource
 //! A window's distance to start from, where nothing is known of it; away from its bound, 0. @param square of a board; 0: there is none
 double startDistance(const RigData& data, double square);
 
-/** What was known of a camera before: its lens, if a file has it, with the file's covariance, and the window's given values
-with the given deviations. */
-KnownCamera knownOf(const cv::refract::RefractiveCamera& camera, const RigOptions& options, int c);
+//! Object -> camera of one image of a view; false if there is none.
+bool solveView(const View& view, const cv::Ptr<cv::refract::RefractiveCamera>& camera, const std::vector<cv::Point2d>& pixels,
+               RigidTransform& pose);
 
-/** What is known of the targets that all views share, as calibrateGlassRig's targetCovariance; empty where they are exact. Where boards
-moved by so much, they also turned about their mean position, so that their edges moved by as much. */
-cv::Mat targetCovarianceOf(const RigData& data, const RigModel& rig, const GivenStd& std);
-
-/** Initial values: lenses, the windows as given, and R, T from the view that fits the others best.
+/** Initial values: lenses, the windows as given, and R, T from the view that fits the others best; with the priors.
 @param found a fit: cameras and windows are at its places; null: there was none */
 RigModel startModel(const RigData& data, const RigOptions& options, std::vector<LensSource>& lensSources, const RigModel* found = nullptr);
 

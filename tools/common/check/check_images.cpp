@@ -4,7 +4,7 @@
 #include "check/check_images.hpp"
 #include "calibrate/calib_file.hpp"
 #include "calibrate/given_std.hpp"
-#include "calibrate/starting_model.hpp"
+#include "calibrate/priors.hpp"
 #include "calibrate/units.hpp"
 #include "console/cli.hpp"
 #include "console/table.hpp"

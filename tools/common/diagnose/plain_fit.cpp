@@ -4,6 +4,7 @@
 #include "diagnose/plain_fit.hpp"
 #include "calibrate/fit.hpp"
 #include "calibrate/parameter_columns.hpp"
+#include "calibrate/priors.hpp"
 #include "console/numbers.hpp"
 #include "measure/view_observations.hpp"
 #include <algorithm>
