@@ -696,15 +696,15 @@ TEST_CASE("refract_calib's report is one self-contained page", "[calib_tool]")
         pictures++;
     // 6 of the camera, one of the error over the range and one for each of the six ranges.
     CHECK(pictures == 13);
-    // The first sheet of paper has the verdict, the error of a point, the given values and the next step.
-    const size_t begin = page.find("<section class=\"sheet\">"), end = page.find("<h2>");
+    // The first page on paper has the verdict, the error of a point, the given values and the next step.
+    const size_t begin = page.find("<section class=\"first_page\">"), end = page.find("<h2>");
     REQUIRE(begin < end);
-    const std::string sheet = page.substr(begin, end - begin);
+    const std::string first = page.substr(begin, end - begin);
     for (const char* part : {"Good, but not checked", "Expected error of a measured point", "<td>20 mm</td>", "<td>1.5437</td>",
                              "<td>exact</td>", "What to do next", "Newest of its images and files: 2"})
-        CHECK(mentions(sheet, part));
+        CHECK(mentions(first, part));
     CHECK(mentions(page, "@page { size: A4"));
-    CHECK(mentions(page, ".sheet { break-after: page; }"));
+    CHECK(mentions(page, ".first_page { break-after: page; }"));
     CHECK(mentions(page, "The same input gives the same page, so it has no time of its making"));
     for (const char* axis : {"u, px", "v, px", "z, away from the camera, mm", "x, to the right, mm", "y, downwards, mm", "RMS, px",
                              "view (name of its images)", "turn of the normal, deg", "expected error, mm", "z from camera 1, mm"})

@@ -61,9 +61,9 @@ std::string timeText(const RigCalibration& c)
         + time.substr(11, 8) + " UTC";
 }
 
-/** The first sheet of paper has room for so many sentences and rows; the pages after it have all.
+/** The first page on paper has room for so many sentences and rows; the pages after it have all.
 @param name of the list in the template; it also gets has_NAME and more_NAME */
-void setOnSheet(Json& page, const std::string& name, const std::vector<std::string>& sentences, size_t room)
+void setOnFirstPage(Json& page, const std::string& name, const std::vector<std::string>& sentences, size_t room)
 {
     const size_t shown = std::min(room, sentences.size());
     page.set(name, pageList({sentences.begin(), sentences.begin() + shown}));
@@ -79,16 +79,16 @@ bool hasRoom(const Findings& f)
     return f.contradictions.size() + f.weak.size() + f.limits.size() <= FEW;
 }
 
-void setSheet(Json& page, const RigCalibration& c, const Assessment& a, const Findings& f)
+void setFirstPage(Json& page, const RigCalibration& c, const Assessment& a, const Findings& f)
 {
     const size_t CONTRADICTIONS = 3, WEAK = 5, GIVEN = 14, CANNOT_TELL = 4;
-    setOnSheet(page, "sheet_contradictions", f.contradictions, CONTRADICTIONS);
-    setOnSheet(page, "sheet_weak", f.weak, WEAK);
-    setOnSheet(page, "sheet_cannot_tell", f.cannotTell, hasRoom(f) ? CANNOT_TELL : 0);
+    setOnFirstPage(page, "first_page_contradictions", f.contradictions, CONTRADICTIONS);
+    setOnFirstPage(page, "first_page_weak", f.weak, WEAK);
+    setOnFirstPage(page, "first_page_cannot_tell", f.cannotTell, hasRoom(f) ? CANNOT_TELL : 0);
     std::vector<SummaryRow> given = givenRows(c);
     page.set("has_more_given", given.size() > GIVEN);
     given.resize(std::min(GIVEN, given.size()));
-    page.set("sheet_given", rowsOf(given));
+    page.set("first_page_given", rowsOf(given));
     page.set("next_step", nextStep(c, a, f));
 }
 
@@ -260,7 +260,7 @@ std::string makeReport(const RigCalibration& c, const Assessment& assessment, co
 {
     Json page = Json::object();
     setVerdict(page, c, findings);
-    setSheet(page, c, assessment, findings);
+    setFirstPage(page, c, assessment, findings);
     page.set("given", rowsOf(givenRows(c)));
     page.set("contradictions", pageList(findings.contradictions));
     page.set("weak", pageList(findings.weak));
@@ -294,10 +294,10 @@ std::string makeReport(const RigCalibration& c, const Assessment& assessment, co
     const std::vector<Photo> photos = photosToShow(c);
     Progress progress("drawing the report", (c.influences.empty() ? 5 : 6)*c.data.cameraCount + (isRig ? 2 : 0)
                                              + (int)(assessment.errors.size() + photos.size()) + 1, quiet);
-    std::vector<Json> onSheet, after;
-    (hasRoom(findings) ? onSheet : after).push_back(errorOverRange(c, assessment, progress));
+    std::vector<Json> onFirstPage, after;
+    (hasRoom(findings) ? onFirstPage : after).push_back(errorOverRange(c, assessment, progress));
     addErrorMaps(after, c, assessment, progress);
-    page.set("sheet_figures", onSheet);
+    page.set("first_page_figures", onFirstPage);
     page.set("error_figures", after);
     if (isRig)
     {
