@@ -164,7 +164,7 @@ int refract_epilines_main(int argc, char** argv)
         if (rig.single())
             throw Failure("'" + options.calibration + "' has one camera; epipolar curves need a calibrated pair "
                           "(refract_calib --direct2 --glass2)");
-        rig = firstPair(rig);
+        rig = firstTwoCameras(rig);
         const cv::Mat image1 = readRaw(options.image1, *rig.cameras[0].camera);
         const cv::Mat image2 = readRaw(options.image2, *rig.cameras[1].camera);
         std::vector<Point2d> points, partners;

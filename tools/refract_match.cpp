@@ -101,7 +101,7 @@ cv::Mat pictureOf(const SceneMatches& result, const Calibration& calibration, st
             first.push_back(i);
     if (first.empty())
         throw Failure("--picture: cameras 1 and 2 have no match");
-    const Calibration pair = firstPair(calibration);
+    const Calibration pair = firstTwoCameras(calibration);
     std::vector<cv::Point2d> points, partners;
     const ScaledMatches ofFirst = result.good.only(first);
     for (int i : spreadChoice(ofFirst, modelOf(calibration), MOST))

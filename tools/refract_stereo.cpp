@@ -111,7 +111,7 @@ Calibration readPair(const Options& options, const Command& command)
         command.warn(format("'%s' has %d cameras: depth is that of cameras 1 and 2", options.calibration.c_str(), (int)rig.cameras.size()));
     if (!command.quiet() && options.conditions.isSaid())
         std::cout << options.conditions.notice(rig) << "\n\n";
-    return firstPair(options.conditions.appliedTo(rig, options.calibration));
+    return firstTwoCameras(options.conditions.appliedTo(rig, options.calibration));
 }
 
 std::vector<PairFiles> filesOf(const Options& options, const std::vector<FramePair>& pairs)

@@ -21,7 +21,7 @@ TEST_CASE("The first pair of a rig keeps what the covariance says of it", "[tool
         rig.covariance = Mat(count, count, CV_64F);
         cv::randu(rig.covariance, 1, 2);
         const Mat before = rig.covariance.clone();
-        const Calibration pair = firstPair(rig);
+        const Calibration pair = firstTwoCameras(rig);
         CHECK(cv::norm(rig.covariance, before, cv::NORM_INF) == 0);
         REQUIRE(pair.covariance.rows == place + 6);
         CHECK(pair.covariance.at<double>(3, 5) == before.at<double>(3, 5));

@@ -155,7 +155,7 @@ RigModel modelOf(const Calibration& calibration)
     return rig;
 }
 
-Calibration firstPair(const Calibration& rig)
+Calibration firstTwoCameras(const Calibration& rig)
 {
     Calibration pair = rig;
     pair.cameras.resize(2);

@@ -79,7 +79,7 @@ std::vector<cv::Point3d> triangulate(const RigModel& rig, const std::vector<std:
                                      int method = cv::refract::TRIANGULATE_OPTIMAL, cv::OutputArray reprojectionErrors = cv::noArray());
 
 //! Cameras 1 and 2 alone, with what the covariance says of them.
-Calibration firstPair(const Calibration& rig);
+Calibration firstTwoCameras(const Calibration& rig);
 
 //! As a file of it would be, without what the estimate is worth.
 Calibration calibrationOf(const RigModel& rig);

@@ -56,9 +56,9 @@ void addPlacement(double placement, const std::vector<View>& views, CheckInput& 
     RigData data;
     data.cameraCount = (int)input.rig.cameras.size();
     data.views = views;
-    GivenStd std;
-    std.placement = placement;
-    const cv::Mat covariance = targetCovarianceOf(data, input.rig, std);
+    GivenStd given;
+    given.placement = placement;
+    const cv::Mat covariance = targetCovarianceOf(data, input.rig, given);
     if (!covariance.empty())
         input = withTargetColumns(input, covariance);
 }

@@ -76,7 +76,7 @@ PairDiagnosis diagnosisOf(const Calibration& calibration, std::vector<Frames>& c
     const int other = at + later;
     if (other < 0 || other >= (int)moments.size() || moments[at].frames[0] < 0 || moments[other].frames[1] < 0)
         return {};
-    return diagnosePair(firstPair(calibration), greyFrame(cameras[0], moments[at].frames[0], calibration, 0),
+    return diagnosePair(firstTwoCameras(calibration), greyFrame(cameras[0], moments[at].frames[0], calibration, 0),
                         greyFrame(cameras[1], moments[other].frames[1], calibration, 1));
 }
 
