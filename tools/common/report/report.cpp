@@ -272,8 +272,8 @@ std::string makeReport(const RigCalibration& c, const Assessment& assessment, co
     std::vector<std::string> rejected;
     for (const Rejected& d : rejectedOf(c))
         rejected.push_back(d.sentence());
-    page.set("dropped", pageList(rejected));
-    page.set("has_dropped", !rejected.empty());
+    page.set("rejected", pageList(rejected));
+    page.set("has_rejected", !rejected.empty());
     page.set("stereo", c.data.cameraCount > 1);
     page.set("fold_cameras", c.data.cameraCount > 2);
     page.set("few_cameras", c.data.cameraCount <= 2);
