@@ -38,6 +38,7 @@ TEST_CASE("What a source is known to is a number of the unit that stands beside 
     std.wedge = 2.*ARC_MINUTE;
     std.scale = 1e-4;
     RigCalibration c = calibrated(std);
+    CHECK(c.fit.stdDeviations.rows == c.fit.covariance.rows);       // without the targets' scale
     int told = 0;
     for (const double square : {SQUARE, 0.})            // a board, and targets of points
     {

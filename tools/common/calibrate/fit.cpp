@@ -228,6 +228,7 @@ Fit fitImages(const RigData& data, const RigModel& start, const std::vector<int>
     }
     fit.withTargets = fit.covariance;
     const int count = columnCount(fit.rig);
+    fit.stdDeviations = fit.stdDeviations.rowRange(0, count).clone();
     fit.covariance = fit.covariance(Rect(0, 0, count, count)).clone();
     return fit;
 }
