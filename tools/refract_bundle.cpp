@@ -190,7 +190,7 @@ std::string unitOf(const Options& o, const Calibration& file)
     return !o.bundle.unit.empty() ? o.bundle.unit : file.unit;
 }
 
-int ended(const Options& o, const BundleAdjustment& adjustment, const BundleFindings& findings)
+int exitCode(const Options& o, const BundleAdjustment& adjustment, const BundleFindings& findings)
 {
     if (!findings.limitMet)
         std::cerr << cv::format("refract_bundle: limit not met: %.3g px RMS, the limit is %g.\n", adjustment.fit.rms, o.maxRms);
@@ -234,8 +234,8 @@ double knownNoise(const Options& o, const Calibration& file, const Matches& matc
 }
 
 //! What is to be thought of it, and why it is not as the start says: what the images are comes before what that leads to.
-BundleFindings judged(const Options& o, const Calibration& file, const Matches& matches, const GivenLengths& lengths,
-                      const BundleStart& start, const BundleAdjustment& adjustment)
+BundleFindings examine(const Options& o, const Calibration& file, const Matches& matches, const GivenLengths& lengths,
+                       const BundleStart& start, const BundleAdjustment& adjustment)
 {
     const double knownSigma = knownNoise(o, file, matches);
     const auto adjust = [&](const BundleStart& from) { return adjustBundle(from, matches, lengths, o.robust); };
@@ -278,7 +278,7 @@ int bundleMatches(const Options& options, const Calibration& file, const Command
         std::cerr << "refract_bundle: " << exchange << "; as given they have no fit, and nothing is written.\n";
         return LIMIT_NOT_MET;
     }
-    const BundleFindings findings = judged(options, file, matches, lengths, start, adjustment);
+    const BundleFindings findings = examine(options, file, matches, lengths, start, adjustment);
     const std::string unit = unitOf(options, file);
     writeCalibration(options.out, resultOf(options, adjustment, findings, file, unit, command));
     if (!options.pointsOut.empty())
@@ -292,7 +292,7 @@ int bundleMatches(const Options& options, const Calibration& file, const Command
     }
     if (!command.quiet())
         printBundle(std::cout, matches, adjustment, findings, unit);
-    return ended(options, adjustment, findings);
+    return exitCode(options, adjustment, findings);
 }
 
 int bundleSurvey(const Options& options, const Calibration& file, const Command& command)
@@ -318,7 +318,7 @@ int bundleSurvey(const Options& options, const Calibration& file, const Command&
                          "refract_bundle: poses and points through windows, nearest pinholes, less " + originText(result.start));
     if (!command.quiet())
         std::cout << said.str();
-    return ended(options, result.adjustment.bundle, result.findings);
+    return exitCode(options, result.adjustment.bundle, result.findings);
 }
 
 void refuseOtherImages(const Options& o)

@@ -86,7 +86,7 @@ private:
             testAll();
         decide();
         if (result_.changed)
-            name();
+            fitAndName();
         addWindows();
         addTurns();
         if (!isScene_ && asCalibrated_.rows)
@@ -222,7 +222,7 @@ private:
         inParallel((int)those.size(), [&](int i) { fitOf(*those[i]); });
     }
 
-    void name()
+    void fitAndName()
     {
         double largest = 0.;
         for (const TestedChange& tested : tested_)

@@ -179,7 +179,7 @@ std::vector<std::vector<Mat>> covariancesOf(const Matches& matches)
 
 } // namespace
 
-void adjusted(const std::function<void()>& adjust)
+void adjustOrExplain(const std::function<void()>& adjust)
 {
     try
     {
@@ -238,7 +238,7 @@ BundleAdjustment adjustBundle(const BundleStart& start, const Matches& matches, 
     }
     const TermCriteria criteria(TermCriteria::COUNT + TermCriteria::EPS, iterations, 1e-12);
     Mat points3D, deviations;
-    adjusted([&] {
+    adjustOrExplain([&] {
         fit.rms = refractiveBundleAdjust(pixels, fit.rig.cameras, fit.rig.windows, Rs, Ts, noArray(), noArray(), points3D, lengths.rows(),
                                          fit.stdDeviations, fit.covariance, deviations, noArray(), inliers,
                                          start.flags | (robust ? GLASS_ROBUST : 0), noArray(), criteria, noArray(), covariancesOf(matches),

@@ -32,7 +32,7 @@ BundleAdjustment adjustBundle(const BundleStart& start, const Matches& matches, 
                               int iterations = 1000);
 
 /** Runs what adjusts. Throws Failure that says what was found, then what to do here. */
-void adjusted(const std::function<void()>& adjust);
+void adjustOrExplain(const std::function<void()>& adjust);
 
 /** The standard deviation of a usual pixel, and the degrees of freedom that tell it; lengths and what was known are equations, too.
 @param squaredPixels of all that are used, each over its relative variance

@@ -50,7 +50,7 @@ void adjust(const Survey& survey, const BundleStart& bundle, const SurveyStart& 
                                          errors, result.used, flags, known, criteria, noArray(), noArray(), bundle.covariance,
                                          start.lengths.commonStd(), 1e9*memory);
     };
-    adjusted([&] {
+    adjustOrExplain([&] {
         try
         {
             run();
