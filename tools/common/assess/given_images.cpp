@@ -86,18 +86,18 @@ void fitQuickly(RigCalibration& c)
     c.fit = fitAllImages(c.data, c.start, c.lensSources, c.options.flags);
 }
 
-void add(Progressed& progressed, const std::string& text) { progressed.words += (progressed.words.empty() ? "" : ", ") + text; }
+void add(Sufficiency& sufficiency, const std::string& text) { sufficiency.words += (sufficiency.words.empty() ? "" : ", ") + text; }
 
 //! True if there are limits and all are met.
-bool compareWithLimits(const RigCalibration& c, Progressed& progressed)
+bool compareWithLimits(const RigCalibration& c, Sufficiency& sufficiency)
 {
     bool met = c.limits.normalStdDeg > 0 || !c.limits.errors.empty();
     for (int k = 0; k < c.data.cameraCount && c.limits.normalStdDeg > 0; k++)
     {
         const double std = windowStd(c.fit, k).normalDeg[0];
         met = met && std <= c.limits.normalStdDeg;
-        add(progressed, (c.data.cameraCount > 1 ? format("camera %d: ", k + 1) : "") + format("normal +- %.3g of %g deg", std,
-                                                                                             c.limits.normalStdDeg));
+        add(sufficiency, (c.data.cameraCount > 1 ? format("camera %d: ", k + 1) : "") + format("normal +- %.3g of %g deg", std,
+                                                                                              c.limits.normalStdDeg));
     }
     Calibration calibration = calibrationOf(c.fit.rig);
     calibration.covariance = c.fit.covariance;
@@ -105,18 +105,18 @@ bool compareWithLimits(const RigCalibration& c, Progressed& progressed)
     {
         const double error = mapErrors(calibration, limit.range, c.fit.sigma, ERROR_MAP_COLUMNS).worst();
         met = met && error <= limit.error;
-        add(progressed, format("error at %g %s %.3g of %g", limit.range, c.unit.c_str(), error, limit.error));
+        add(sufficiency, format("error at %g %s %.3g of %g", limit.range, c.unit.c_str(), error, limit.error));
     }
     return met;
 }
 
-bool isNextWorthLittle(const RigCalibration& c, double leastGain, Progressed& progressed)
+bool isNextWorthLittle(const RigCalibration& c, double leastGain, Sufficiency& sufficiency)
 {
     const Advice advice = adviseImages(c);
     if (advice.pairs.empty())
         return false;
     const double gain = 1 - advice.pairs[0].quality.calibrationPart/advice.now.calibrationPart;
-    add(progressed, format("the best next pair would take %.1f %% off the calibration's part of a point's error", 100*gain));
+    add(sufficiency, format("the best next pair would take %.1f %% off the calibration's part of a point's error", 100*gain));
     return gain < leastGain;
 }
 
@@ -179,25 +179,25 @@ void calibrateImages(RigCalibration& c, bool robust, const std::function<void()>
 the best next pair would make points better by less than was asked for. What cannot be fitted yet is not enough.
 @param c with data, options and limits; taken by value, as it is fitted
 @param leastGain share of the calibration's part of a point's error that the next pair must take off to be waited for; 0: not asked */
-static Progressed progressOf(RigCalibration c, double leastGain)
+static Sufficiency sufficiencyOf(RigCalibration c, double leastGain)
 {
-    Progressed progressed;
+    Sufficiency sufficiency;
     if (areFew(c.data))
-        return progressed;
+        return sufficiency;
     try
     {
         fitQuickly(c);
-        progressed.isEnough = compareWithLimits(c, progressed);
-        if (!progressed.isEnough && leastGain > 0)
-            progressed.isEnough = isNextWorthLittle(c, leastGain, progressed);
+        sufficiency.isEnough = compareWithLimits(c, sufficiency);
+        if (!sufficiency.isEnough && leastGain > 0)
+            sufficiency.isEnough = isNextWorthLittle(c, leastGain, sufficiency);
     }
     catch (const std::exception&)       // cv::Exception is one: these images do not determine all yet
     {
         return {};
     }
-    if (!progressed.words.empty())
-        progressed.words = "so far: " + progressed.words + (progressed.isEnough ? ": enough" : "");
-    return progressed;
+    if (!sufficiency.words.empty())
+        sufficiency.words = "so far: " + sufficiency.words + (sufficiency.isEnough ? ": enough" : "");
+    return sufficiency;
 }
 
 //! The images that the views of the sets came from; none for corners that came from a file.
@@ -297,9 +297,9 @@ RigImages GivenImages::watchThem(const Target* target, const RigCalibration& pre
             }
             catch (const std::exception&)       // said at the end, if it is still so
             {
-                return Progressed();
+                return Sufficiency();
             }
-            return progressOf(c, 0.01*watchGain);
+            return sufficiencyOf(c, 0.01*watchGain);
         };
     std::ostream nowhere(nullptr);
     return watchRig(watch, rig, left, quiet ? nowhere : std::cout);

@@ -22,7 +22,7 @@ struct GivenImages
 {
     RigSources sources;
     WatchOptions watch;
-    double watchGain = 0.;          //!< percent, see progressOf(); 0: not asked
+    double watchGain = 0.;          //!< percent, see sufficiencyOf(); 0: not asked
     std::string imageSize, poses;
     bool unpaired = false;
 

@@ -265,10 +265,10 @@ private:
     void assess()
     {
         toAssess_ = false;
-        const Progressed progressed = rig_.assess(images());
-        if (!progressed.words.empty())
-            out_ << "    " << progressed.words << std::endl;
-        enough_ = progressed.isEnough;
+        const Sufficiency sufficiency = rig_.assess(images());
+        if (!sufficiency.words.empty())
+            out_ << "    " << sufficiency.words << std::endl;
+        enough_ = sufficiency.isEnough;
     }
 
     void say(const WatchedSource& source, const std::string& path, const std::string& what)

@@ -22,7 +22,7 @@ struct WatchOptions
 };
 
 //! What the images that came so far are worth.
-struct Progressed
+struct Sufficiency
 {
     bool isEnough = false;
     std::string words;                  //!< empty: nothing can be said yet
@@ -33,7 +33,7 @@ struct WatchedRig
     RigSources sources;
     const Target& target;
     bool unpaired;
-    std::function<Progressed(const RigImages&)> assess;     //!< after each image that helps; empty: it is not asked
+    std::function<Sufficiency(const RigImages&)> assess;    //!< after each image that helps; empty: it is not asked
 };
 
 /** Waits while images come into the folders of some sources. Says of each image whether the target was found, how sharp and how well

@@ -132,10 +132,10 @@ std::vector<Point2d> projectPoints(const std::vector<cv::Point3d>& points, const
 }
 
 //! Draws poses that every camera sees, with and without its window.
-class PoseLottery
+class RandomPoses
 {
 public:
-    PoseLottery(const Keys& keys, const Target& target, const Calibration& rig, uint64_t seed)
+    RandomPoses(const Keys& keys, const Target& target, const Calibration& rig, uint64_t seed)
         : target_(target), rig_(rig), rng_(seed), distance_(keys.numbers("distance", 2)),
           tilt_(keys.numbers("tilt_deg", 2)), roll_(keys.number("roll_deg", 0, 180, 0)),
           margin_(keys.number("margin", 0, 1e5, 20)),
@@ -239,12 +239,12 @@ std::vector<NamedPose> readPoses(const FileNode& node, const Target& target, con
     const Keys keys(node, "poses: " + name);
     keys.allowOnly({"count", "distance", "tilt_deg", "roll_deg", "margin", "seen_by"});
     const int count = (int)keys.number("count", 1, 10000);
-    PoseLottery lottery(keys, target, rig, seed);
+    RandomPoses random(keys, target, rig, seed);
     const int digits = (int)std::to_string(count).size();
     for (int i = 1; i <= count; i++)
     {
         const std::string stem = name + cv::format("%0*d", digits, i);
-        poses.push_back({stem, lottery.draw(stem)});
+        poses.push_back({stem, random.draw(stem)});
     }
     return poses;
 }

@@ -151,7 +151,7 @@ std::vector<Point2d> detectPartialChessboard(const Mat& grey, Size size)
     }
 }
 
-bool glimpseChessboard(const Mat& grey, Size size)
+bool isChessboardLikely(const Mat& grey, Size size)
 {
     std::vector<Point2f> corners;
     return findChessboardCornersSB(smallCopy(grey), size, corners);

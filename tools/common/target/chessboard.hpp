@@ -23,7 +23,7 @@ squares are cut, by the board's edge or by that of the view, and are less exact 
 std::vector<cv::Point2d> detectPartialChessboard(const cv::Mat& grey, cv::Size size);
 
 //! Whether a chessboard of that size is seen in a small copy of the image.
-bool glimpseChessboard(const cv::Mat& grey, cv::Size size);
+bool isChessboardLikely(const cv::Mat& grey, cv::Size size);
 
 /** The size of the largest chessboard that is seen in a small copy of the image, whatever it is, in inner corners, the longer side first;
 empty: none is. */

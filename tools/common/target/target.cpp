@@ -179,11 +179,11 @@ std::vector<Point2d> Target::detect(const Mat& grey, Size* other) const
     return points.empty() ? points : canonical(points, grey);
 }
 
-bool Target::glimpse(const Mat& grey) const
+bool Target::isLikelySeen(const Mat& grey) const
 {
     if (partial_)
         return !lookForChessboard(grey).empty();
-    return pattern_ == CHESSBOARD ? glimpseChessboard(grey, size_) : !detect(grey).empty();
+    return pattern_ == CHESSBOARD ? isChessboardLikely(grey, size_) : !detect(grey).empty();
 }
 
 std::vector<std::vector<int>> Target::symmetries() const

@@ -79,7 +79,7 @@ public:
     std::vector<cv::Point2d> detect(const cv::Mat& grey, cv::Size* other = nullptr) const;
 
     //! Whether it is worth while to look for the target: a fast detector finds it, of a chessboard in a small copy of the image.
-    bool glimpse(const cv::Mat& grey) const;
+    bool isLikelySeen(const cv::Mat& grey) const;
 
     /** The same points, renumbered by the target's symmetry so that the target is turned as in `reference`, another
     view of it by the same or a similarly turned camera. */

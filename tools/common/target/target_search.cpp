@@ -27,20 +27,20 @@ bool mayBePart(cv::Size chessboard, const Target& target)
     return !chessboard.empty() && chessboard.width <= whole.width && chessboard.height <= whole.height;
 }
 
-std::string quotedNames(const std::vector<Without>& images)
+std::string quotedNames(const std::vector<ImageWithoutTarget>& images)
 {
     std::vector<std::string> paths;
-    for (const Without& image : images)
+    for (const ImageWithoutTarget& image : images)
         paths.push_back(image.path);
     return listed(paths);
 }
 
 //! The size that most of the images show in which a chessboard is seen; empty: there is no such majority.
-cv::Size usualSize(const std::vector<Without>& images)
+cv::Size usualSize(const std::vector<ImageWithoutTarget>& images)
 {
     std::map<std::pair<int, int>, int> counts;
     int all = 0;
-    for (const Without& image : images)
+    for (const ImageWithoutTarget& image : images)
         if (!image.chessboard.empty())
         {
             counts[{image.chessboard.width, image.chessboard.height}]++;
@@ -53,7 +53,7 @@ cv::Size usualSize(const std::vector<Without>& images)
 }
 
 //! In at least one of the first images.
-bool isFound(const Target& target, const std::vector<Without>& images, Channel channel)
+bool isFound(const Target& target, const std::vector<ImageWithoutTarget>& images, Channel channel)
 {
     const size_t count = std::min(images.size(), TRIED);
     std::vector<char> found(count);
@@ -62,7 +62,8 @@ bool isFound(const Target& target, const std::vector<Without>& images, Channel c
     return std::count(found.begin(), found.end(), true) > 0;
 }
 
-std::optional<Target> like(const Target& target, const std::string& pattern, const std::string& dictionary, bool partial)
+//! As large as another. No value: there is no such board.
+std::optional<Target> withPattern(const Target& target, const std::string& pattern, const std::string& dictionary, bool partial)
 {
     TargetOptions options;
     options.pattern = pattern;
@@ -81,19 +82,19 @@ std::optional<Target> like(const Target& target, const std::string& pattern, con
 }
 
 //! Half a board, or a hand before it: what to do.
-std::string partAdvice(const std::vector<Without>& images, const Target& target, Channel channel)
+std::string partAdvice(const std::vector<ImageWithoutTarget>& images, const Target& target, Channel channel)
 {
-    const std::optional<Target> partial = like(target, "chessboard", TargetOptions().dictionary, true);
+    const std::optional<Target> partial = withPattern(target, "chessboard", TargetOptions().dictionary, true);
     return std::string("keep the whole board in view and uncovered")
            + (partial && isFound(*partial, images, channel)
               ? ", or, with one camera and a hand-held board, add --unpaired --partial, which finds a piece of it in these images"
               : "; what is seen of it is too little for --partial");
 }
 
-std::string partText(const std::vector<Without>& images, const Target& target, Channel channel)
+std::string partText(const std::vector<ImageWithoutTarget>& images, const Target& target, Channel channel)
 {
     std::vector<std::string> sizes;
-    for (const Without& image : images)
+    for (const ImageWithoutTarget& image : images)
         if (mayBePart(image.chessboard, target))
             sizes.push_back(sizeText(image.chessboard));
     std::sort(sizes.begin(), sizes.end());
@@ -106,12 +107,12 @@ std::string partText(const std::vector<Without>& images, const Target& target, C
 }
 
 //! A target with tags: a ChArUco board with the same number of points, or an AprilGrid; empty: none is found.
-std::string otherTags(const std::vector<Without>& images, const Target& target, Channel channel)
+std::string otherTags(const std::vector<ImageWithoutTarget>& images, const Target& target, Channel channel)
 {
-    const std::vector<Without> one(images.begin(), images.begin() + 1);
+    const std::vector<ImageWithoutTarget> one(images.begin(), images.begin() + 1);
     for (const char* dictionary : {"DICT_4X4_250", "DICT_5X5_1000", "DICT_6X6_1000", "DICT_7X7_1000", "DICT_ARUCO_ORIGINAL"})
     {
-        const std::optional<Target> tried = like(target, "charuco", dictionary, false);
+        const std::optional<Target> tried = withPattern(target, "charuco", dictionary, false);
         if (tried && isFound(*tried, one, channel))
             return std::string("--pattern=charuco --dictionary=") + dictionary;
     }
@@ -121,16 +122,16 @@ std::string otherTags(const std::vector<Without>& images, const Target& target, 
 }
 
 //! Where no chessboard is asked for, nobody has looked for one yet.
-cv::Size chessboardIn(const std::vector<Without>& images, Channel channel)
+cv::Size chessboardIn(const std::vector<ImageWithoutTarget>& images, Channel channel)
 {
-    std::vector<Without> seen(images.begin(), images.begin() + (long)std::min(images.size(), TRIED));
-    for (Without& image : seen)
+    std::vector<ImageWithoutTarget> seen(images.begin(), images.begin() + (long)std::min(images.size(), TRIED));
+    for (ImageWithoutTarget& image : seen)
         image.chessboard = lookForChessboard(readGrey(image.path, channel));
     return seen.size() > 1 ? usualSize(seen) : seen[0].chessboard;
 }
 
 //! A plate of dots of another size, or one of which a row is covered; empty: no image shows one.
-std::string otherDots(const std::vector<Without>& images, const Target& target, Channel channel)
+std::string otherDots(const std::vector<ImageWithoutTarget>& images, const Target& target, Channel channel)
 {
     for (size_t i = 0; i < std::min(images.size(), TRIED); i++)
     {
@@ -189,20 +190,22 @@ std::vector<cv::Point2d> detectIn(const cv::Mat& grey, const std::string& path, 
 }
 
 //! The size of the chessboard that all these images show in place of the one that was asked for; empty if they do not agree.
-static cv::Size otherChessboard(const std::vector<Without>& images)
+static cv::Size otherChessboard(const std::vector<ImageWithoutTarget>& images)
 {
     const cv::Size other = images[0].chessboard;
-    const bool agree = std::all_of(images.begin(), images.end(), [&](const Without& image) { return image.chessboard == other; });
+    const auto isSame = [&](const ImageWithoutTarget& image) { return image.chessboard == other; };
+    const bool agree = std::all_of(images.begin(), images.end(), isSame);
     return agree ? other : cv::Size();
 }
 
-std::string explainMissing(const std::vector<Without>& images, const std::string& where, size_t all, const Target& target, Channel channel)
+std::string explainMissing(const std::vector<ImageWithoutTarget>& images, const std::string& where, size_t all, const Target& target,
+                           Channel channel)
 {
     const bool isChessboard = target.pattern() == Target::CHESSBOARD && !target.partial();
-    const auto parts = (size_t)std::count_if(images.begin(), images.end(), [&](const Without& image) {
+    const auto parts = (size_t)std::count_if(images.begin(), images.end(), [&](const ImageWithoutTarget& image) {
         return mayBePart(image.chessboard, target); });
     const cv::Size usual = usualSize(images);
-    std::vector<Without> first(images.begin(), images.begin() + (long)std::min<size_t>(images.size(), 3));
+    std::vector<ImageWithoutTarget> first(images.begin(), images.begin() + (long)std::min<size_t>(images.size(), 3));
     if (isChessboard && !usual.empty() && !mayBePart(usual, target))
         return otherTargetText(quotedNames(first), target, usual);
     if (isChessboard && 2*parts >= images.size())        // clutter looks like a few squares here and there
@@ -263,13 +266,13 @@ void TargetSearch::search(const std::vector<int>& which, Progress& progress)
     });
 }
 
-bool TargetSearch::glimpse(const std::vector<int>& which, Progress& progress)
+bool TargetSearch::isLikelyInAny(const std::vector<int>& which, Progress& progress)
 {
     std::atomic<bool> any(false);
     inParallel((int)which.size(), [&](int k) {
         const int i = which[k];
         progress.at(paths_[i]);
-        if (!any && target_.glimpse(readGrey(paths_[i], channel_)))
+        if (!any && target_.isLikelySeen(readGrey(paths_[i], channel_)))
             any = true;
     });
     return any;
@@ -289,10 +292,10 @@ void TargetSearch::lookForOthers(const std::vector<int>& which)
 
 void TargetSearch::refuse(const std::vector<int>& which) const
 {
-    std::vector<Without> images;
+    std::vector<ImageWithoutTarget> images;
     for (int i : which)
         images.push_back({paths_[i], results_[i].other});
-    std::sort(images.begin(), images.end(), [](const Without& a, const Without& b) { return a.path < b.path; });
+    std::sort(images.begin(), images.end(), [](const ImageWithoutTarget& a, const ImageWithoutTarget& b) { return a.path < b.path; });
     throw Failure(explainMissing(images, "'" + source_ + "'", paths_.size(), target_, channel_));
 }
 
@@ -303,14 +306,14 @@ void TargetSearch::begin(Progress& progress)
     const auto isFound = [this](int i) { return !results_[i].points.empty(); };
     if (first.empty() || std::any_of(first.begin(), first.end(), isFound))
         return;
-    std::vector<Without> images;
+    std::vector<ImageWithoutTarget> images;
     for (int i : first)
         images.push_back({paths_[i], results_[i].other});
     if (first.size() > 1 && !otherChessboard(images).empty())
         refuse(first);
     if (paths_.size() <= FIRST)
         refuse(first);
-    if (glimpse(part(order, FIRST, GLANCES), progress))
+    if (isLikelyInAny(part(order, FIRST, GLANCES), progress))
         return;
     lookForOthers(part(order, FIRST, EXPLAINING));
     refuse(part(order, 0, EXPLAINING));

@@ -12,8 +12,7 @@ namespace tools {
 
 /* What images show in place of the target that was asked for. */
 
-//! An image in which the target was not found.
-struct Without
+struct ImageWithoutTarget
 {
     std::string path;
     cv::Size chessboard;        //!< the largest that is seen in it, the longer side first; empty: none
@@ -26,7 +25,8 @@ std::vector<cv::Point2d> detectIn(const cv::Mat& grey, const std::string& path, 
 of another kind, or nothing at all.
 @param where the glob, in quotes
 @param images that were looked at; all: how many there are */
-std::string explainMissing(const std::vector<Without>& images, const std::string& where, size_t all, const Target& target, Channel channel);
+std::string explainMissing(const std::vector<ImageWithoutTarget>& images, const std::string& where, size_t all, const Target& target,
+                           Channel channel);
 
 //! "the chessboard in WHERE looks like one of 9x6 inner corners, not --size=10x7: ..."
 std::string otherTargetText(const std::string& where, const Target& target, cv::Size other);
@@ -56,7 +56,7 @@ private:
 
     void search(const std::vector<int>& which, Progress& progress);
     //! Whether one of these is worth while to be searched.
-    bool glimpse(const std::vector<int>& which, Progress& progress);
+    bool isLikelyInAny(const std::vector<int>& which, Progress& progress);
     void lookForOthers(const std::vector<int>& which);
     [[noreturn]] void refuse(const std::vector<int>& which) const;
 
