@@ -59,6 +59,7 @@ value. A PASS that is not the whole truth says so: "PASS; look at the weak point
 
 The same input gives the same bytes: outputs carry the time of the newest image (or that of SOURCE_DATE_EPOCH).)";
 
+#include "assess/calibrate_images.hpp"
 #include "assess/given_images.hpp"
 #include "calibrate/given_window.hpp"
 #include "calibrate/lens_choice.hpp"

@@ -6,7 +6,7 @@ of boards, without rendering; and mistakes that are made with such images. */
 #ifndef REFRACT_TEST_TOOLS_MISTAKE_SCENES_HPP
 #define REFRACT_TEST_TOOLS_MISTAKE_SCENES_HPP
 
-#include "assess/given_images.hpp"
+#include "assess/calibrate_images.hpp"
 #include "calibrate/units.hpp"
 #include "diagnose/hypothesis_tests.hpp"
 #include "measure/rig_vector.hpp"

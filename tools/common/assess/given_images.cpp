@@ -3,16 +3,13 @@
 
 #include "assess/given_images.hpp"
 #include "assess/advice.hpp"
-#include "calibrate/rig_data.hpp"
 #include "calibrate/fit.hpp"
 #include "calibrate/outliers.hpp"
 #include "calibrate/parameter_columns.hpp"
-#include "calibrate/pinhole_camera.hpp"
 #include "calibrate/poses_file.hpp"
+#include "calibrate/rig_data.hpp"
 #include "console/failure.hpp"
 #include "console/numbers.hpp"
-#include "diagnose/diagnosis.hpp"
-#include "diagnose/plain_fit.hpp"
 #include "measure/point_error.hpp"
 #include <algorithm>
 #include <iostream>
@@ -23,46 +20,6 @@ using cv::format;
 namespace tools {
 
 namespace {
-
-const int FEW_ITERATIONS = 30;          // where a wrong value is known to be, a fit within what is known of it may creep;
-const int FEW_ROBUST_ITERATIONS = 15;   // and where nothing fits, each of many
-
-//! @param only see PlainFit
-void start(RigCalibration& c, bool robust, int maxIterations, std::optional<RigModel>& only)
-{
-    if (robust)
-        c.outliers = startWithoutOutliers(c.data, c.options, c.start, c.lensSources, maxIterations, only);
-    else
-        c.start = startModel(c.data, c.options, c.lensSources, only ? &*only : nullptr);
-}
-
-void fit(RigCalibration& c, const std::function<void()>& step, int maxIterations, bool isPlaced)
-{
-    c.fit = fitAllImages(c.data, c.start, c.lensSources, c.options.flags, maxIterations, isPlaced);
-    c.residuals = residualsOf(c.data, c.fit);
-    step();
-    c.baselines = computeBaselines(c.data, c.start, c.lensSources);
-    step();
-}
-
-//! The lens of a target with depth is searched for from many focal lengths, half a minute if its points are wrong.
-bool isSlowToStart(const CalibrationInput& input)
-{
-    bool solid = false, known = true;
-    for (const View& view : input.data.views)
-        solid = solid || isSolid(view.objectPoints);
-    for (int k = 0; k < input.data.cameraCount; k++)
-        known = known && input.options.known[k];
-    return solid && !known;
-}
-
-//! Not of what was given, but of where a fit ended.
-bool isOfBadFit(CalibrationError::Cause cause)
-{
-    return cause == CalibrationError::NOT_CONVERGED || cause == CalibrationError::UNDETERMINED
-        || cause == CalibrationError::PAIRS_CONTRADICT || cause == CalibrationError::PAIRS_SWAPPED
-        || cause == CalibrationError::TOO_FEW_INLIERS;
-}
 
 const int LEAST_PAIRS = 3;              // of each camera: the noise is not known from fewer
 const int LEAST_GLASS_ONLY = 8;         // without pairs
@@ -121,59 +78,6 @@ bool isNextWorthLittle(const RigCalibration& c, double leastGain, Sufficiency& s
 }
 
 } // namespace
-
-void calibrateImages(RigCalibration& c, bool robust, const std::function<void()>& step)
-{
-    const CalibrationInput input{c.data, c.options, c.square, c.notices};
-    if (!(c.options.flags & GLASS_USE_POSES))
-        cameraLinks(c.data, false);         // throws where there are none: the first that cannot be, before causes of it are looked for
-    // A wrong value makes good points look wrong, and the search for these long: so look first.
-    PlainFit plain;
-    bool fitsPlainly = true, mayFit = true;
-    if (!isSlowToStart(input))
-    {
-        const MixUps mixUps = findMixUps(input);
-        std::optional<RigModel> only;
-        const bool lookedAtImages = requireNoMixUp(input, mixUps, only);
-        plain = fitPlainly(input, only);
-        const bool suspicious = isSuspicious(input, plain);
-        fitsPlainly = isSound(input, plain, suspicious);
-        if (suspicious)
-            requireNoCause(input, mixUps, plain, !lookedAtImages);
-        if (!fitsPlainly || plain.explained)
-            plain.only.reset();
-    }
-    const auto explained = [&](const auto& error, const std::string& reason) {
-        return plain.explained ? reason + ": " + plain.explained->sentence : explainError(error, input); };
-    try
-    {
-        start(c, robust && !plain.explained, fitsPlainly ? MAX_ROBUST_ITERATIONS : FEW_ROBUST_ITERATIONS, plain.only);
-        step();
-        // No mistake that is known of explains it. If wrong points do not either, a fit would creep for minutes.
-        mayFit = fitsPlainly || medianErrorOfFit(c.data, c.options) < largestSoundError(c.data);
-        const int iterations = !mayFit ? 1 : plain.explained ? FEW_ITERATIONS : MAX_ITERATIONS;        // one tells what has no fit at all
-        fit(c, step, iterations, plain.only.has_value());
-    }
-    catch (const CalibrationError& e)
-    {
-        if (!mayFit && isOfBadFit(e.cause))
-            refuseUnexplained(input, plain);
-        throw Failure(mayFit ? explained(e, e.reason) : e.err);
-    }
-    catch (const cv::Exception& e)
-    {
-        throw Failure(mayFit ? explained(e.err, e.err) : e.err);
-    }
-    catch (const Failure& e)
-    {
-        if (isSlowToStart(input) || !mayFit)
-            throw;
-        throw Failure(explained(std::string(e.what()), e.what()));
-    }
-    if (!mayFit)
-        refuseUnexplained(input, plain);
-    requirePlausible(c.data, c.residuals, rmsOfSeparateFits(c.baselines, c.lensSources), input);
-}
 
 /** Whether the images that came so far are enough: the limits of normals and points are met by the covariance of a quick fit of them, or
 the best next pair would make points better by less than was asked for. What cannot be fitted yet is not enough.

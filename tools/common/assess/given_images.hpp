@@ -6,16 +6,8 @@
 
 #include "assess/rig_calibration.hpp"
 #include "calibrate/live_rig.hpp"
-#include <functional>
 
 namespace tools {
-
-/** Lens and start, wrong points, the fit, and what a user would do instead. Throws Failure with the likely causes where the images do
-not fit what is given.
-@param calibration in: data, options, square, notices; the rest is result, and of the data outliers are removed
-@param robust without wrong points and images
-@param step after each third of the work */
-void calibrateImages(RigCalibration& calibration, bool robust, const std::function<void()>& step);
 
 //! What the options of refract_calib say of images, and from these to views.
 struct GivenImages
