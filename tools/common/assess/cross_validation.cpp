@@ -5,7 +5,9 @@
 #include "calibrate/fit.hpp"
 #include "calibrate/pinhole_camera.hpp"
 #include "calibrate/refit.hpp"
+#include "calibrate/window_face.hpp"
 #include "console/failure.hpp"
+#include "console/progress.hpp"
 #include "math/dense.hpp"
 #include "measure/eigen_matrix.hpp"
 #include "measure/measurement.hpp"
@@ -275,6 +277,31 @@ NearFar nearAgainstFar(const RigData& data, const Fit& fit, int flags)
     result.windowFarToNear = window(farHalf, nearHalf);
     result.pinholeNearToFar = pinhole(nearHalf, farHalf);
     result.pinholeFarToNear = pinhole(farHalf, nearHalf);
+    return result;
+}
+
+std::vector<Influence> leaveOneOut(const RigData& data, const Fit& fit, int flags, bool quiet)
+{
+    std::vector<Influence> result;
+    for (int i : fit.views)
+        if (data.views[i].hasGlass())
+            result.push_back({i, std::vector<double>(data.cameraCount, NONE)});
+    if (result.size() < 3)
+        return {};
+    Progress progress("leaving out one view at a time", (int)result.size(), quiet);
+    for (Influence& influence : result)
+    {
+        std::vector<int> others = fit.views;
+        others.erase(std::find(others.begin(), others.end(), influence.view));
+        try
+        {
+            const Fit without = fitImages(data, fit.rig, others, flags | FROM_EARLIER_FIT);
+            for (int c = 0; c < data.cameraCount; c++)
+                influence.change[c] = placeChange(fit.rig.cameras[c]->window(), without.rig.cameras[c]->window());
+        }
+        catch (const cv::Exception&) {}     // the others alone do not determine the window: stays NaN
+        progress.step();
+    }
     return result;
 }
 

@@ -4,46 +4,15 @@
 #ifndef REFRACT_TOOLS_CROSS_VALIDATION_HPP
 #define REFRACT_TOOLS_CROSS_VALIDATION_HPP
 
+#include "assess/baselines.hpp"
 #include "calibrate/fit.hpp"
 #include "calibrate/rig_data.hpp"
 #include "calibrate/rig_model.hpp"
-#include "calibrate/starting_model.hpp"
-#include <cmath>
-#include <limits>
 
 /* Cross-validation: the errors of a calibration on images that it was not fitted to. Lens, window and rig are fitted to some of the
-views; the others are held out. A lens that is not part of the fit (given, or from direct images alone) stays. */
+views; the others are held out. A lens that is not part of the fit (given, or from direct images alone) stays. And the influence of single
+views on the result. */
 namespace tools {
-
-/* Baselines: what a user could do instead with the same images (every board pose is fitted to its single image, so that the numbers are
-comparable). And the influence of single views on the result. */
-
-const double NONE = std::numeric_limits<double>::quiet_NaN();
-
-//! RMS px with the pose of each board fitted to its one image.
-class PooledRms
-{
-public:
-    void add(const std::vector<cv::Point3d>& object, const std::vector<cv::Point2d>& pixels,
-             const cv::Ptr<cv::refract::RefractiveCamera>& camera);
-    double value() const { return count_ ? std::sqrt(sum_/count_) : NONE; }
-private:
-    double sum_ = 0.;
-    int count_ = 0;
-};
-
-//! RMS px of the images through the window, all cameras; NaN where it could not be computed.
-struct Baselines
-{
-    std::vector<double> glassIgnored;       //!< per camera: the start's lens alone
-    std::vector<double> shift;              //!< the same, board where the direct image of the pair shows it
-    std::vector<double> throughGlass;       //!< per camera: a pinhole camera calibrated on the glass images
-};
-
-Baselines computeBaselines(const RigData& data, const RigModel& start, const std::vector<LensSource>& lensSources);
-
-//! The largest RMS of what was fitted to one camera: the pinhole through the glass, or the lens. 0: there is none.
-double rmsOfSeparateFits(const Baselines& baselines, const std::vector<LensSource>& lensSources);
 
 //! How far the window of each camera turns (degrees), or a dome's centre moves, if one view is left out: see placeChange.
 struct Influence

@@ -1,12 +1,8 @@
 // This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
 // SPDX-License-Identifier: Apache-2.0
 
-#include "assess/cross_validation.hpp"
-#include "calibrate/fit.hpp"
+#include "assess/baselines.hpp"
 #include "calibrate/pinhole_camera.hpp"
-#include "calibrate/refit.hpp"
-#include "calibrate/window_face.hpp"
-#include "console/progress.hpp"
 #include <algorithm>
 #include <cmath>
 
@@ -90,31 +86,6 @@ double rmsOfSeparateFits(const Baselines& baselines, const std::vector<LensSourc
     for (size_t c = 0; c < lensSources.size(); c++)
         largest = std::max({largest, baselines.throughGlass[c], lensSources[c].rms});
     return largest;
-}
-
-std::vector<Influence> leaveOneOut(const RigData& data, const Fit& fit, int flags, bool quiet)
-{
-    std::vector<Influence> result;
-    for (int i : fit.views)
-        if (data.views[i].hasGlass())
-            result.push_back({i, std::vector<double>(data.cameraCount, NONE)});
-    if (result.size() < 3)
-        return {};
-    Progress progress("leaving out one view at a time", (int)result.size(), quiet);
-    for (Influence& influence : result)
-    {
-        std::vector<int> others = fit.views;
-        others.erase(std::find(others.begin(), others.end(), influence.view));
-        try
-        {
-            const Fit without = fitImages(data, fit.rig, others, flags | FROM_EARLIER_FIT);
-            for (int c = 0; c < data.cameraCount; c++)
-                influence.change[c] = placeChange(fit.rig.cameras[c]->window(), without.rig.cameras[c]->window());
-        }
-        catch (const cv::Exception&) {}     // the others alone do not determine the window: stays NaN
-        progress.step();
-    }
-    return result;
 }
 
 } // namespace tools
