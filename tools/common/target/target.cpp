@@ -14,7 +14,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <numeric>
 
 namespace tools {
@@ -25,7 +24,8 @@ using cv::Size;
 
 namespace {
 
-const std::map<std::string, Target::Pattern> PATTERNS = {
+//! As --pattern names them, and in the order in which texts do.
+const std::vector<std::pair<std::string, Target::Pattern>> PATTERNS = {
     {"chessboard", Target::CHESSBOARD}, {"circles", Target::CIRCLES},
     {"acircles", Target::ACIRCLES}, {"charuco", Target::CHARUCO}, {"aprilgrid", Target::APRILGRID}};
 
@@ -44,12 +44,47 @@ double signedArea(const std::vector<Point2d>& points, Size size)
     return (points[size.width - 1] - points[0]).cross(points[points.size() - size.width] - points[0]);
 }
 
+std::vector<std::string> patternNames()
+{
+    std::vector<std::string> names;
+    for (const auto& pattern : PATTERNS)
+        names.push_back(pattern.first);
+    return names;
+}
+
+//! "chessboard, circles, ... or aprilgrid"
+std::string patternChoice()
+{
+    std::string text = PATTERNS[0].first;
+    for (size_t i = 1; i < PATTERNS.size(); i++)
+        text += (i + 1 < PATTERNS.size() ? ", " : " or ") + PATTERNS[i].first;
+    return text;
+}
+
+//! Of a board's points, in sides of a square.
+std::vector<cv::Vec2d> placesOf(Target::Pattern pattern, Size size, double tagSpacing)
+{
+    switch (pattern)
+    {
+    case Target::CHESSBOARD:
+    case Target::CIRCLES:
+    case Target::CHARUCO:
+        return gridOf(size, false);
+    case Target::ACIRCLES:
+        return gridOf(size, true);
+    case Target::APRILGRID:
+        return aprilGridOf(size/2, tagSpacing);
+    case Target::DOTS:          // a file says where they are
+        break;
+    }
+    return {};
+}
+
 } // namespace
 
 void TargetOptions::addTo(OptionParser& parser, bool required)
 {
-    parser.add("--pattern", pattern, "chessboard, circles, acircles, charuco or aprilgrid (Kalibr's)")
-        .check(isMember({"chessboard", "circles", "acircles", "charuco", "aprilgrid"})).captureDefault();
+    parser.add("--pattern", pattern, patternChoice() + " (Kalibr's)").check(isMember(patternNames())).captureDefault();
     parser.add("--size", size, "COLSxROWS: inner corners (chessboard, charuco), dots or tags (aprilgrid)").required(required);
     parser.add("--square", square, "side of a square; distance between dots; acircles: half the distance "
                "between the dots of a row; aprilgrid: side of a tag").required(required).check(moreThanZero());
@@ -84,9 +119,9 @@ Target::Target(const TargetOptions& options)
         size_ = Size((int)dots.points.size(), 1);
         return;
     }
-    const auto found = PATTERNS.find(options.pattern);
+    const auto found = std::find_if(PATTERNS.begin(), PATTERNS.end(), [&](const auto& p) { return p.first == options.pattern; });
     if (found == PATTERNS.end())
-        throw Failure("--pattern=" + options.pattern + ": give chessboard, circles, acircles, charuco or aprilgrid");
+        throw Failure("--pattern=" + options.pattern + ": give " + patternChoice());
     pattern_ = found->second;
     if (!(square_ > 0) || !std::isfinite(square_))
         throw Failure("--square: give the length of a square's side, more than 0");
@@ -117,7 +152,7 @@ Target::Target(const TargetOptions& options)
             throw Failure("--pattern=aprilgrid: a board has up to " + std::to_string(APRIL_TAGS) + " tags, and --tag-spacing is 1 or less");
         size_ = size_*2;
     }
-    for (const cv::Vec2d& place : pattern_ == APRILGRID ? aprilGridOf(size_/2, tagSpacing_) : gridOf(size_, pattern_ == ACIRCLES))
+    for (const cv::Vec2d& place : placesOf(pattern_, size_, tagSpacing_))
         objectPoints_.emplace_back(square_*place[0], square_*place[1], 0);
 }
 
@@ -166,16 +201,25 @@ std::vector<std::pair<int, int>> Target::neighbours() const
 
 std::vector<Point2d> Target::detect(const Mat& grey, Size* other) const
 {
-    if (pattern_ == CHARUCO)
+    std::vector<Point2d> points;
+    switch (pattern_)
+    {
+    case CHESSBOARD:
+        if (partial_)
+            return detectPartialChessboard(grey, size_);
+        points = detectChessboard(grey, size_, other);
+        break;
+    case CIRCLES:
+    case ACIRCLES:
+        points = detectCircleGrid(grey, size_, pattern_ == ACIRCLES);
+        break;
+    case CHARUCO:
         return detectCharuco(grey, size_, square_, marker_, dictionary_, legacy_);
-    if (pattern_ == APRILGRID)
+    case APRILGRID:
         return detectAprilGrid(grey, size_/2, tagSpacing_);
-    if (pattern_ == DOTS)
+    case DOTS:
         return detectListedDots(grey, objectPoints_);
-    if (partial_)
-        return detectPartialChessboard(grey, size_);
-    const std::vector<Point2d> points = pattern_ == CHESSBOARD ? detectChessboard(grey, size_, other)
-        : detectCircleGrid(grey, size_, pattern_ == ACIRCLES);
+    }
     return points.empty() ? points : canonical(points, grey);
 }
 
@@ -192,10 +236,23 @@ std::vector<std::vector<int>> Target::symmetries() const
     std::vector<std::vector<int>> orders(1);
     for (int i = 0; i < count(); i++)
         orders[0].push_back(i);
-    if (pattern_ == CHARUCO || pattern_ == APRILGRID || pattern_ == DOTS)
-        return orders;
-    const bool halfTurn = pattern_ == CIRCLES || (pattern_ == CHESSBOARD && (columns + rows) % 2 == 0)
-                          || (pattern_ == ACIRCLES && rows % 2 == 0);
+    bool halfTurn = false;
+    switch (pattern_)
+    {
+    case CHESSBOARD:
+        halfTurn = (columns + rows) % 2 == 0;
+        break;
+    case CIRCLES:
+        halfTurn = true;
+        break;
+    case ACIRCLES:
+        halfTurn = rows % 2 == 0;
+        break;
+    case CHARUCO:
+    case APRILGRID:
+    case DOTS:                  // each point is told from all others
+        break;
+    }
     if (halfTurn)
         orders.emplace_back(orders[0].rbegin(), orders[0].rend());
     if (pattern_ == CIRCLES && columns == rows)
