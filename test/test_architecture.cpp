@@ -158,6 +158,17 @@ TEST_CASE("Inside the tools an include names the component", "[architecture]")
     }
 }
 
+TEST_CASE("No header of the tools has the include path of one of the module", "[architecture]")
+{
+    // Sources of the tools see both trees, and would take the one that they are told of first.
+    for (const std::string& file : below(ROOT + "/" + TREES[1], false))
+        if (fs::path(file).extension() == ".hpp")
+        {
+            CAPTURE(file);
+            CHECK_FALSE(fs::exists(ROOT + "/" + TREES[0] + "/" + file));
+        }
+}
+
 TEST_CASE("Files that the tables of the architecture name exist", "[architecture]")
 {
     const std::vector<std::string> paths = knownPaths();
