@@ -64,10 +64,16 @@ double distanceToGrid(double coordinate, double square)
 //! Within some pixels of an edge of the pattern. @param pixel its size on the board
 bool isNearEdge(const Target& target, const Point2d& p, double pixel)
 {
-    if (target.pattern() == Target::CHESSBOARD || target.pattern() == Target::CHARUCO)
+    switch (target.pattern())
     {
-        const double least = std::min(distanceToGrid(p.x, target.square()), distanceToGrid(p.y, target.square()));
-        return least < EDGE_PX*pixel;
+    case Target::CHESSBOARD:
+    case Target::CHARUCO:
+        return std::min(distanceToGrid(p.x, target.square()), distanceToGrid(p.y, target.square())) < EDGE_PX*pixel;
+    case Target::CIRCLES:
+    case Target::ACIRCLES:
+    case Target::DOTS:
+    case Target::APRILGRID:         // refract_laser refuses it
+        break;
     }
     return std::any_of(target.objectPoints().begin(), target.objectPoints().end(), [&](const Point3d& dot) {
         return norm(p - Point2d(dot.x, dot.y)) < LARGEST_DOT*target.dotRadius() + EDGE_PX*pixel; });

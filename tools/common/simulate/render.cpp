@@ -58,8 +58,18 @@ private:
     bool isDark(double s, double t) const
     {
         const bool inside = s >= -border_ && t >= -border_ && s < columns_ - 1 + border_ && t < rows_ - 1 + border_;
-        if (pattern_ == Target::CHESSBOARD)
+        switch (pattern_)
+        {
+        case Target::CHESSBOARD:
             return inside && ((int)std::floor(s) + (int)std::floor(t)) % 2 == 0;
+        case Target::CHARUCO:           // drawn
+        case Target::APRILGRID:
+        case Target::CIRCLES:           // dots
+        case Target::ACIRCLES:
+            break;
+        case Target::DOTS:              // not on a board
+            return false;
+        }
         if (!drawing_.empty())
             return inside && drawing_.at<uchar>(std::min((int)((t + border_)*DRAWING), drawing_.rows - 1),
                                                 std::min((int)((s + border_)*DRAWING), drawing_.cols - 1)) < 128;

@@ -228,21 +228,29 @@ void BoardPage::drawBoard(cairo_t* cairo) const
     const cairo_matrix_t fromBoard = {x.x, x.y, y.x, y.y, origin.x, origin.y};
     cairo_save(cairo);
     cairo_transform(cairo, &fromBoard);
-    if (target_.pattern() == Target::CHESSBOARD)
-        addChessboard(cairo, squares, square(), Point2d());
-    else if (target_.pattern() == Target::CHARUCO)
+    const cv::Mat modules = target_.modules();
+    switch (target_.pattern())
     {
-        const cv::Mat modules = target_.modules();
+    case Target::CHESSBOARD:
+        addChessboard(cairo, squares, square(), Point2d());
+        break;
+    case Target::CHARUCO:
         addCharuco(cairo, modules, modules.cols/squares.width, square(), target_.marker()*millimetres_, Point2d());
-    }
-    else if (target_.pattern() == Target::APRILGRID)
+        break;
+    case Target::APRILGRID:
         addAprilGrid(cairo, target_.size()/2, square(), target_.tagSpacing(), Point2d());
-    else
+        break;
+    case Target::CIRCLES:
+    case Target::ACIRCLES:
         for (const cv::Point3d& p : target_.objectPoints())
         {
             cairo_new_sub_path(cairo);
             cairo_arc(cairo, border() + p.x*millimetres_, border() + p.y*millimetres_, border(), 0, 2*CV_PI);
         }
+        break;
+    case Target::DOTS:              // not on a board
+        break;
+    }
     cairo_fill(cairo);
     cairo_restore(cairo);
 }
