@@ -210,8 +210,13 @@ static void findCoarseDepth(const RectifiedRig& rig, const Mat& image1, const Ma
 {
     const Mat coarse = coarseDisparity(rig, image1, image2, options);
     const int FEW = 64;
+    Mat found1, found2;
     if (cv::countNonZero(coarse == coarse) > FEW)
-        cv::refract::refractiveRectifiedDepth(coarse, rig.P1, rig.P2, rig.size(), depth1, depth2);
+        cv::refract::refractiveRectifiedDepth(coarse, rig.P1, rig.P2, rig.size(), found1, found2);
+    if (found2.empty() || std::isnan(found2.at<float>(0, 0)))       // one is NaN where all are, in image 2 if in image 1
+        return;
+    depth1 = found1;
+    depth2 = found2;
 }
 
 DenseStereo matchPair(const RectifiedRig& rig, const Mat& image1, const Mat& image2, const MatcherOptions& options)

@@ -77,12 +77,15 @@ void fillUnknown(Mat& values, const Mat& weight)
     wide.copyTo(values, unknown);
 }
 
-//! What is not positive is unknown.
+//! What is not positive is unknown. Where all is, as in an image of darkness, all becomes NaN.
 void fill(Mat& cells)
 {
     const Mat isKnown = cells > 0;
     if (countNonZero(isKnown) == 0)
-        CV_Error(Error::StsBadArg, "disparity has too few values in every region to compute a depth");
+    {
+        cells.setTo(std::numeric_limits<float>::quiet_NaN());
+        return;
+    }
     Mat weight;
     isKnown.convertTo(weight, CV_32F, 1./255);
     cells.setTo(0, ~isKnown);
