@@ -234,7 +234,7 @@ TEST_CASE("Distorted points without answer have a status; without window they ar
     CHECK(status[0] == REFRACT_OK);
     CHECK(status[1] == REFRACT_NOT_FINITE);
     CHECK(status[2] == REFRACT_BEHIND_WINDOW);
-    CHECK(status[3] != REFRACT_OK);
+    CHECK(status[3] == REFRACT_BEHIND_WINDOW);
     CHECK(status[4] == REFRACT_NOT_FINITE);
     for (int i = 1; i < 5; i++)
         CHECK((std::isnan(out[i][0]) && std::isnan(out[i][1])));
@@ -265,7 +265,7 @@ TEST_CASE("Depths with no point have a status", "[undistort]")
     CHECK(status[0] == REFRACT_OK);
     CHECK(status[1] == REFRACT_BEHIND_WINDOW);
     CHECK(status[2] == REFRACT_BEHIND_WINDOW);
-    CHECK((status[3] == REFRACT_NO_INTERSECTION || status[3] == REFRACT_BEHIND_WINDOW));
+    CHECK(status[3] == REFRACT_BEHIND_WINDOW);
     CHECK(status[4] == REFRACT_OK);
     for (int i = 1; i < 4; i++)
         CHECK((std::isnan(out[i][0]) && std::isnan(out[i][1])));
@@ -274,6 +274,40 @@ TEST_CASE("Depths with no point have a status", "[undistort]")
     refractiveUndistortPoints(pixels, out, K, noArray(), glass, std::vector<double>{ 500 }, halfTurn, noArray(), status);
     CHECK(status[0] == REFRACT_BEHIND_CAMERA);
     CHECK(std::isnan(out[0][0]));
+}
+
+TEST_CASE("Depths that are not positive have the same status both ways, behind any window", "[undistort]")
+{
+    Random random;
+    const LensKind wide = lensNamed("fisheye");     // it also sees what lies behind it
+    const std::vector<double> depths = { -5, 0, -0., -1e-300, -1e6, -INF, NaN, 1e3 };
+    const int count = (int)depths.size();
+    for (WindowKind kind : allWindows())
+        for (const LensKind& lens : { lensNamed("the paper's"), wide })
+            for (const Vec2d& at : { Vec2d(0.1, 0.05), Vec2d(-0.3, 0.2), Vec2d() })
+                for (const Vec3d& rvec : { Vec3d(), Vec3d(0.1, 0.2, 0), Vec3d(0, CV_PI, 0) })
+                {
+                    const Ptr<RefractiveCamera> camera = makeCamera(lens, makeWindow(kind, random, 15));
+                    const Mat K = camera->cameraMatrix();
+                    const Vec2d pixel(K.at<double>(0, 2) + K.at<double>(0, 0)*at[0], K.at<double>(1, 2) + K.at<double>(1, 1)*at[1]);
+                    std::vector<Vec2d> out;
+                    std::vector<uchar> there, back;
+                    refractiveUndistortPoints(std::vector<Vec2d>(count, pixel), out, camera, depths, rvec, noArray(), there);
+                    refractiveDistortPoints(std::vector<Vec2d>(count, at), out, camera, depths, rvec, noArray(), back);
+                    for (int i = 0; i < count; i++)
+                    {
+                        CAPTURE(name(kind), lens.name, at, rvec, depths[i], (int)there[i], (int)back[i], seed());
+                        const int expected = std::isnan(depths[i]) ? REFRACT_NOT_FINITE
+                                             : kind == NO_WINDOW ? REFRACT_NO_INTERSECTION : REFRACT_BEHIND_WINDOW;
+                        if (depths[i] > 0)
+                            continue;
+                        CHECK(there[i] == expected);
+                        CHECK(back[i] == expected);
+                        CHECK((std::isnan(out[i][0]) && std::isnan(out[i][1])));
+                    }
+                    if (rvec[1] < 1)
+                        CHECK((there.back() == REFRACT_OK && back.back() == REFRACT_OK));
+                }
 }
 
 TEST_CASE("Bad arguments of refractiveUndistortPoints are named", "[undistort]")

@@ -32,6 +32,14 @@ static DepthReader depthsOf(InputArray depth, const PointReader& points, const C
     return depths;
 }
 
+//! The status of points at depths that are not positive, where they have none yet.
+static void refuseDepths(const Camera& camera, int n, const double* depth, uchar* status)
+{
+    for (int i = 0; i < n; i++)
+        if (status[i] == REFRACT_OK && depth[i] <= 0)
+            status[i] = camera.refracts() ? REFRACT_BEHIND_WINDOW : REFRACT_NO_INTERSECTION;
+}
+
 static void undistort(const PointReader& in, OutputArray dst, const Camera& cam, const DepthReader& depths, InputArray R_,
                       InputArray P_, OutputArray status)
 {
@@ -48,6 +56,7 @@ static void undistort(const PointReader& in, OutputArray dst, const Camera& cam,
         depths.load(begin, n, planeD);
         in.load(begin, n, u, v, NULL, st);
         cam.unproject(n, u, v, rays, st);
+        refuseDepths(cam, n, planeD, st);
         out.prepare(begin, n);
         meetPlane(cam.layers(), n, ahead, planeD, rays, x, y, z, NULL, st);
         pinhole(H, axis, n, x, y, z, u, v, st);
@@ -99,14 +108,15 @@ static void distort(const PointReader& in, OutputArray dst, const Camera& cam, c
     forEachBlock(in.size(), [&](int begin, int n)
     {
         double x[BLOCK], y[BLOCK], z[BLOCK], u[BLOCK], v[BLOCK];
-        uchar st[BLOCK], finite[BLOCK];
+        uchar st[BLOCK], given[BLOCK];
         depths.load(begin, n, z);
-        in.load(begin, n, x, y, NULL, finite);
+        in.load(begin, n, x, y, NULL, given);
+        refuseDepths(cam, n, z, given);
         out.prepare(begin, n);
         view.toRaw(n, x, y, z, u, v, st);
         for (int i = 0; i < n; i++)
-            if (finite[i] != REFRACT_OK || std::isnan(z[i]))
-                st[i] = REFRACT_NOT_FINITE;
+            if (given[i] != REFRACT_OK || std::isnan(z[i]))
+                st[i] = std::isnan(z[i]) ? (uchar)REFRACT_NOT_FINITE : given[i];
         out.store(begin, n, u, v, NULL, st);
         outStatus.store(begin, n, st);
     });
