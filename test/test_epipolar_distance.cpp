@@ -294,6 +294,15 @@ TEST_CASE("Epipolar distances: no answer, types, errors", "[epipolar]")
         refractiveEpipolarDistance(strided, m.pixels2, m.camera1->cameraMatrix(), m.camera1->distCoeffs(), m.camera1->window(),
                                    m.camera2->cameraMatrix(), m.camera2->distCoeffs(), m.camera2->window(), m.rvec, m.T, out);
         CHECK(largestDifference(out, all) == 0);
+        // An array of the caller's keeps its shape and its place.
+        Mat wide(70, 5, CV_64F, Scalar(7)), column = wide.col(3), row(1, 70, CV_64F), depths(1, 70, CV_64F), rowStatus(1, 70, CV_8U);
+        Mat jacobian;
+        refractiveEpipolarDistance(m.pixels1, m.pixels2, m.camera1, m.camera2, m.rvec, m.T, row, rowStatus, 1, Vec2d(0, INF), depths,
+                                   jacobian);
+        CHECK((row.size() == Size(70, 1) && depths.size() == Size(70, 1) && rowStatus.size() == Size(70, 1)));
+        CHECK(largestDifference(row, all) < 1e-6);      // derivatives are wanted, too: a little nearer to the nearest point
+        refractiveEpipolarDistance(m.pixels1, m.pixels2, m.camera1, m.camera2, m.rvec, m.T, column);
+        CHECK(largestDifference(wide.col(3).clone(), all) == 0);
         run(std::vector<Point2d>(), std::vector<Point2d>());
         CHECK((distances.empty() && status.empty()));
     }

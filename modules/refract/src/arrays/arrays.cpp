@@ -4,6 +4,7 @@
 
 #include "arrays/arrays.hpp"
 #include "arrays/array_kernels.hpp"
+#include "arrays/column_output.hpp"
 #include "math/rotation.hpp"
 #include <cstring>
 
@@ -358,18 +359,23 @@ static std::vector<Double> readPoints(InputArray a, int channels, const char* na
 std::vector<Point2d> readPoints2(InputArray a, const char* name) { return readPoints<Point2f, Point2d>(a, 2, name); }
 std::vector<Point3d> readPoints3(InputArray a, const char* name) { return readPoints<Point3f, Point3d>(a, 3, name); }
 
+void writeColumn(const Mat& column, OutputArray out)
+{
+    if (!out.needed())
+        return;
+    const int type = out.fixedType() ? out.type() : column.type();
+    out.create(column.rows, 1, type, -1, true);
+    Mat given = out.getMat();
+    column.reshape(0, given.rows).convertTo(given, type);
+}
+
 void writeVectors(const std::vector<Vec3d>& vectors, OutputArrayOfArrays out)
 {
     if (!out.needed())
         return;
     const int count = (int)vectors.size();
     if (!out.isMatVector())
-    {
-        Mat all(count, 1, CV_64FC3);
-        std::copy(vectors.begin(), vectors.end(), all.begin<Vec3d>());
-        all.copyTo(out);
-        return;
-    }
+        return writeColumn(Mat(vectors), out);
     out.create(count, 1, CV_64FC3);
     for (int i = 0; i < count; i++)
     {

@@ -8,6 +8,7 @@ steps; one brings nearly every right match to its end. */
 
 #include "points/epipolar_distance.hpp"
 #include "points/epipolar_curve.hpp"
+#include "arrays/column_output.hpp"
 #include "math/rotation.hpp"
 
 namespace cv { namespace refract {
@@ -314,8 +315,8 @@ static void distances(InputArray points1, InputArray points2, const Ptr<Refracti
         outStatus.store(begin, n, block.status);
     });
     const int depth = distances_.fixedType() ? CV_MAT_DEPTH(distances_.type()) : std::max(in1.depth(), in2.depth());
-    if (distances_.needed())
-        found.convertTo(distances_, depth);
+    found.convertTo(found, depth);
+    writeColumn(found, distances_);
 }
 
 void refractiveEpipolarDistance(InputArray points1, InputArray points2, const Ptr<RefractiveCamera>& camera1,
@@ -348,8 +349,7 @@ void refractiveEpipolarDistance(InputArray points1, InputArray points2, const Pt
 
     Mat depths, jacobian;
     distances(points1, points2, camera1, camera2, R, T, distances_, status, whichImage, depthRange, &depths, &jacobian);
-    if (depths_.needed())
-        depths.copyTo(depths_);
+    writeColumn(depths, depths_);
     if (jacobian_.needed())
         jacobian.copyTo(jacobian_);
 }
