@@ -186,6 +186,50 @@ TEST_CASE("R and T may be lists and rotation vectors, as written by hand", "[rig
     CHECK(rig.covariance.empty());
 }
 
+TEST_CASE("A rig is read into lists of any kind, as a whole or not at all", "[rig_file]")
+{
+    const TemporaryFile file(".yml", THREE);
+    const Rig rig = readAll(file.path);
+    std::vector<Ptr<RefractiveCamera> > cameras;
+    for (size_t before : { 0, 3, 7 })
+    {
+        std::vector<Vec3d> rvecs(before, Vec3d(1, 2, 3)), tvecs(before);
+        REQUIRE_NOTHROW(readRig(file.path, cameras, rvecs, tvecs));
+        REQUIRE((cameras.size() == 3 && rvecs.size() == 3 && tvecs.size() == 3));
+        for (int c = 0; c < 3; c++)
+        {
+            Matx33d R;
+            Rodrigues(rvecs[c], R);
+            CHECK(norm(Mat(R), rig.Rs[c]) < 1e-14);
+            CHECK(tvecs[c] == rig.Ts[c]);
+        }
+    }
+    Mat rowOfR(1, 3, CV_64FC3), rowOfT(1, 3, CV_64FC3);
+    readRig(file.path, cameras, rowOfR, rowOfT);
+    CHECK((rowOfR.size() == Size(3, 1) && rowOfT.size() == Size(3, 1)));
+    CHECK(rowOfT.at<Vec3d>(2) == rig.Ts[2]);
+    std::vector<Vec3f> single;
+    readRig(file.path, cameras, noArray(), single);
+    CHECK((single.size() == 3 && single[2] == Vec3f(5, 6, 7)));
+
+    std::vector<Matx33d> matrices(3);
+    readRig(file.path, cameras, matrices, noArray());
+    CHECK(norm(Mat(matrices[2]), rig.Rs[2]) < 1e-14);
+    for (size_t wrong : { 0, 2 })
+    {
+        const Ptr<RefractiveCamera> mine = makeCamera(allLenses()[0], GlassWindow());
+        std::vector<Vec3d> tvecs(1, Vec3d(1, 2, 3));
+        std::vector<int> windows(1, 5);
+        Mat covariance(1, 1, CV_64F, Scalar(9));
+        matrices.assign(wrong, Matx33d::eye());
+        cameras.assign(1, mine);
+        const std::string text = thrown([&] { readRig(file.path, cameras, matrices, tvecs, windows, covariance); });
+        CHECK_THAT(text, Contains("Rs must be") && Contains("Matx33d> of 3"));
+        CHECK((cameras.size() == 1 && cameras[0] == mine && tvecs == std::vector<Vec3d>(1, Vec3d(1, 2, 3))));
+        CHECK((windows == std::vector<int>(1, 5) && covariance.total() == 1 && covariance.at<double>(0) == 9));
+    }
+}
+
 TEST_CASE("A file that is no rig is refused with its name and what is wrong", "[rig_file]")
 {
     struct Bad { std::string text, what; };

@@ -56,29 +56,26 @@ void writeRotation(const Matx33d& R, OutputArray out)
 void writeExtrinsics(const std::vector<RigidTransform>& extrinsics, OutputArrayOfArrays Rs, OutputArrayOfArrays Ts)
 {
     const int count = (int)extrinsics.size();
-    const bool isFixed = Rs.needed() && !Rs.isMatVector();     // std::vector<Matx33d>, which OutputArray cannot resize
-    const bool areVectors = isFixed && Rs.type() == CV_64FC3;
-    if (isFixed && ((Rs.type() != CV_64FC(9) && !areVectors) || (int)Rs.total() != count))
-        CV_Error_(Error::StsBadArg, ("Rs must be a std::vector<Mat>, or a std::vector<Matx33d> of %d (or of Vec3d)", count));
-    if (Rs.needed() && !isFixed)
-        Rs.create(count, 1, CV_64F);
-    Mat fixed = isFixed ? Rs.getMat() : Mat();
-    std::vector<Vec3d> T;
-    for (int c = 0; c < count; c++)
+    const bool isArray = Rs.needed() && !Rs.isMatVector(), areVectors = isArray && Rs.type() == CV_64FC3;
+    // OutputArray cannot resize a std::vector<Matx33d>.
+    if (isArray && !areVectors && (Rs.type() != CV_64FC(9) || (int)Rs.total() != count))
+        CV_Error_(Error::StsBadArg, ("Rs must be a std::vector<Mat>, a std::vector<Vec3d>, or a std::vector<Matx33d> of %d", count));
+    std::vector<Vec3d> rotations, T;
+    std::vector<Mat> R;
+    for (const RigidTransform& camera : extrinsics)
     {
-        T.push_back(extrinsics[c].t);
-        if (!Rs.needed())
-            continue;
-        if (areVectors)
-            fixed.ptr<Vec3d>()[c] = rotationVector(extrinsics[c].R);
-        else if (isFixed)
-            fixed.ptr<Matx33d>()[c] = extrinsics[c].R;
-        if (isFixed)
-            continue;
-        Rs.create(3, 3, CV_64F, c, true);
-        Mat(extrinsics[c].R).copyTo(Rs.getMat(c));
+        rotations.push_back(rotationVector(camera.R));
+        R.push_back(Mat(camera.R, true));
+        T.push_back(camera.t);
     }
     writeVectors(T, Ts);
+    if (areVectors)
+        return writeVectors(rotations, Rs);
+    if (!isArray)
+        return writeMatrices(R, Rs);
+    Mat fixed = Rs.getMat();
+    for (int c = 0; c < count; c++)
+        fixed.ptr<Matx33d>()[c] = extrinsics[c].R;
 }
 
 }} // namespace

@@ -185,15 +185,18 @@ void read(const String& filename, std::vector<Ptr<RefractiveCamera> >& cameras, 
         if (number > 1)
             places.push_back(readPlace(root, number, filename));
     }
+    std::vector<int> windows;
     if (windowOfCamera)
-        *windowOfCamera = readWindows(root, found.size(), filename);
+        windows = readWindows(root, found.size(), filename);
     if (covariance)
     {
         *covariance = readStoredMatrix(root, "covariance", filename);
         checkRigCovariance(*covariance, found, filename + ": ");
     }
+    writeExtrinsics(places, Rs, Ts);        // all or nothing: what may be refused comes first
     cameras = found;
-    writeExtrinsics(places, Rs, Ts);
+    if (windowOfCamera)
+        *windowOfCamera = windows;
 }
 
 } // namespace
