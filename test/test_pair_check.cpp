@@ -63,6 +63,90 @@ TEST_CASE("Swapped direct and refracted points are named", "[pair_check]")
             }
 }
 
+TEST_CASE("Swapped points are named behind thin and slanted windows, too", "[pair_check]")
+{
+    for (double thickness : { 5., 10., 20. })
+        for (double degrees : { 0., 6., 20., 36., 60. })
+            for (int flags : { 0, (int)GLASS_ROBUST })
+            {
+                const double tilt = degrees*CV_PI/180;
+                Mono mono(GlassWindow(Vec3d(0.8*std::sin(tilt), 0.6*std::sin(tilt), std::cos(tilt)), thickness, 1.5, 50), 6, 0.3);
+                CAPTURE(thickness, degrees, flags, seed());
+                CHECK(mono.why(mono.scene.direct, mono.scene.refracted, flags) == "");
+                const std::string text = mono.why(mono.scene.refracted, mono.scene.direct, flags);
+                CAPTURE(mono.rms);
+                CHECK_THAT(text, Contains("swapped"));
+            }
+}
+
+namespace {
+
+//! A rig of any kind, and what came of its images, first as they are, then swapped.
+struct AnyRig
+{
+    explicit AnyRig(int number) : random(8200 + number)
+    {
+        const bool isWater = number % 3 == 0;
+        const int views = 1 + number % 8, flags = number % 5 == 2 ? GLASS_ROBUST : number % 5 == 3 ? GLASS_FREE_THICKNESS : 0;
+        const double tilt = random.uniform(0, 0.7), azimuth = random.uniform(0, 2*CV_PI);
+        const double thickness = std::pow(10., random.uniform(-1, 1.5)), sigma = std::pow(10., random.uniform(-2, 0));
+        RigTruth truth = makeRig(number % 4 == 1 ? 2 : 1, { 0, 1 }, isWater ? 1.333 : 1);
+        truth.windows.resize(truth.cameras.size());
+        for (size_t c = 0; c < truth.cameras.size(); c++)
+        {
+            GlassWindow window = truth.cameras[c]->window();
+            window.normal = Vec3d(std::sin(tilt)*std::cos(azimuth), std::sin(tilt)*std::sin(azimuth), std::cos(tilt));
+            window.thickness[0] = thickness;
+            truth.cameras[c]->setWindow(window);
+        }
+        const RigScene scene = makeRigScene(truth, views, random, sigma);
+        what = format("%d: %d cameras, %d views, %s, %g thick, tilt %g, sigma %g, flags %d", number, (int)truth.cameras.size(), views,
+                      isWater ? "water" : "air", thickness, tilt, sigma, flags);
+        for (int swapped = 0; swapped < 2; swapped++)
+        {
+            RigCall call(truth, scene, true);       // whose windows look straight ahead
+            if (swapped)
+                std::swap(call.direct, call.refracted);
+            text[swapped] = thrown([&] { rms[swapped] = call.run(flags); });
+        }
+        points = 2*views*(int)truth.cameras.size()*(int)board().size();
+    }
+    bool isRefused(int swapped) const
+    { return Contains("swapped").match(text[swapped]) || Contains("same target").match(text[swapped]); }
+    //! Logarithm of the likelihood that the right order has over the swapped one.
+    double gain() const { return 2*points*std::log(rms[1]/rms[0]); }
+
+    Random random;
+    int points;
+    std::string what, text[2];
+    double rms[2];
+};
+
+} // namespace
+
+TEST_CASE("No right pairs are refused, and swapped ones where the images tell", "[pair_check][slow]")
+{
+    const int TRIALS = trials(80);
+    int named = 0, silent = 0;
+    double most = 0;
+    for (int i = 0; i < TRIALS; i++)
+    {
+        const AnyRig rig(i);
+        CAPTURE(rig.what, rig.text[0], rig.text[1], seed());
+        CHECK(!rig.isRefused(0));
+        named += rig.isRefused(1);
+        if (!rig.text[0].empty() || !rig.text[1].empty())
+            continue;
+        silent++;
+        CAPTURE(rig.rms[0], rig.rms[1]);
+        CHECK(rig.gain() < 24);         // of 12 that must be clear, and of most pairs
+        most = std::max(most, rig.gain());
+    }
+    std::cout << "[numbers] swapped pairs: " << named << " of " << TRIALS << " named, " << silent << " fitted, of a likelihood of e^-"
+              << most << " at least (seed " << seed() << ")" << std::endl;
+    CHECK(named > TRIALS/2);
+}
+
 TEST_CASE("Swapped points of a pair of cameras, and of a rig, are named", "[pair_check]")
 {
     Random random(810);

@@ -4,8 +4,11 @@
 
 /* Are the pairs what the caller says they are?
 
-The fit of swapped or unpaired images ends somewhere, with a normal that means nothing. What gives it away, whatever the noise
-and the window:
+Swapped images are fitted well by a window that leans the other way, but for what the window does along its normal, which makes the
+targets larger. So where what the fit leaves of the displacements, refracted minus direct, has a scale beyond its noise, the swapped
+images are fitted, too. They are named if they are clearly the more likely ones.
+
+The fit of unpaired images ends somewhere, with a normal that means nothing. What gives it away, whatever the noise and the window:
 
     contradiction = RMS residual of the pairs / RMS of what they have to explain, refracted minus direct.
         A window of which a constant is wrong by a tenth leaves less than a tenth of it; one of the wrong direction, or two
@@ -13,9 +16,9 @@ and the window:
     excess = RMS residual of the pairs / RMS residual of the same images, each with a pose of its own.
         Noise, a lens that is not quite right or wrong corners show in both.
 
-Both are needed: where the window hardly displaces anything, noise alone is a large contradiction. Two more fits then say what it
-is: one with the images exchanged, and one with the window's constants free. If the latter explains the pairs they are pairs, and
-a grossly wrong thickness or index is the caller's to see in the residuals. */
+Both are needed: where the window hardly displaces anything, noise alone is a large contradiction. One more fit then says what it
+is, with the window's constants free. If it explains the pairs they are pairs, and a grossly wrong thickness or index is the
+caller's to see in the residuals. */
 
 #include "calibrate/pair_check.hpp"
 #include "calibrate/calibration_error.hpp"
@@ -28,11 +31,9 @@ namespace cv { namespace refract {
 
 namespace {
 
-//! Above it the pairs are worth a second look, which takes time.
-const double SUSPICIOUS_CONTRADICTION = 0.1;
 const double LARGEST_CONTRADICTION = 0.25, LARGEST_EXCESS = 5;
-//! The swapped arrangement must fit better by this factor.
-const double CLEARLY_BETTER = 0.5;
+//! Of another fit that explains all: noise.
+const double USUAL_EXCESS = 1.5;
 
 //! A sum of squares of distances in pixels.
 struct Squares
@@ -145,33 +146,139 @@ double residualApart(const std::vector<Pair>& pairs, const RigViews& views, cons
     return residual.rms();
 }
 
-//! Of a fit that explains most pairs; infinite if there is none.
-double plausibleRms(Rig rig, RigTask task)
+//! Where the camera sees a point of its frame; NaN: nowhere.
+Point2d pixelOf(const Camera& camera, const Vec3d& X)
 {
-    const double infinity = std::numeric_limits<double>::infinity();
-    task.wantsCovariance = false;
+    const double NaN = std::numeric_limits<double>::quiet_NaN();
+    Point2d pixel;
+    uchar status = REFRACT_OK;
+    camera.project(1, &X[0], &X[1], &X[2], nullptr, &pixel.x, &pixel.y, &status);
+    return status == REFRACT_OK ? pixel : Point2d(NaN, NaN);
+}
+
+//! How pixels move from or to their middle: sums of a regression.
+struct ScaleFit
+{
+    double along = 0, size = 0, squares = 0, freedom = -1;
+    void add(const std::vector<Point2d>& place, const std::vector<Point2d>& motion)
+    {
+        const Scalar middle = mean(place), common = mean(motion);
+        for (size_t i = 0; i < place.size(); i++)
+        {
+            const Vec2d x(place[i].x - middle[0], place[i].y - middle[1]), e(motion[i].x - common[0], motion[i].y - common[1]);
+            along += e.dot(x);
+            size += x.dot(x);
+            squares += e.dot(e);
+        }
+        freedom += 2*(double)place.size() - 2;
+    }
+    //! False: no more than the rest of the motion makes it.
+    bool isClear() const
+    {
+        const double CLEAR = 3;         // standard deviations
+        return !(along*along*freedom <= CLEAR*CLEAR*(squares*size - along*along));
+    }
+};
+
+/** What the fit leaves of the displacements makes the targets larger or smaller. Errors of lens and target, which both images
+share, play no part. */
+bool leavesScale(const std::vector<Pair>& pairs, const RigViews& views, const Rig& rig, const RigFit& fit)
+{
+    ScaleFit scale;
+    for (const Pair& p : pairs)
+    {
+        const PairImages images(p, views, fit);
+        const Camera &camera = rig.cameras[p.camera], bare = withWindow(camera);
+        const RigidTransform inCamera = transformOf(rig.extrinsics[p.camera])*transformOf(fit.poses[p.view]);
+        std::vector<Point2d> place, left;
+        for (size_t i = 0; i < images.image[0].size(); i++)
+        {
+            const Point2d from = images.image[0][i], to = images.image[1][i];
+            const Vec3d X = inCamera.R*Vec3d(views.object[p.view][i]) + inCamera.t;
+            const Point2d e = to - from - (pixelOf(camera, X) - pixelOf(bare, X));
+            if (!isWhole(e))
+                continue;
+            place.push_back(from);
+            left.push_back(e);
+        }
+        if (!place.empty())
+            scale.add(place, left);
+    }
+    return scale.isClear();
+}
+
+//! Another fit, of the same images or swapped ones.
+struct OtherFit
+{
+    bool isPlausible = false;       //!< it explains most pairs
     RigFit fit;
-    if (!fitRig(rig, task, fit).converged())
-        return infinity;
-    const std::vector<Pair> pairs = pairsOf(task.views), used = usedOf(pairs, fit);
-    const bool isPlausible = 2*used.size() >= pairs.size() && residualOf(used, task.views, fit) <
-                             LARGEST_CONTRADICTION*displacementOf(used, task.views, fit);
-    return isPlausible ? fit.rms : infinity;
+};
+
+//! @param apart RMS residual of the same images, each with a pose of its own, or 0
+OtherFit fitOther(Rig rig, RigTask task, double apart)
+{
+    OtherFit other;
+    task.wantsCovariance = false;
+    try
+    {
+        if (!fitRig(rig, task, other.fit).converged())
+            return other;
+    }
+    catch (const Exception&)        // images that are no pairs lead to windows that cannot be, as a tube behind the camera
+    {
+        return other;
+    }
+    const std::vector<Pair> pairs = pairsOf(task.views), used = usedOf(pairs, other.fit);
+    const double most = std::max(LARGEST_CONTRADICTION*displacementOf(used, task.views, other.fit), USUAL_EXCESS*apart);
+    other.isPlausible = 2*used.size() >= pairs.size() && residualOf(used, task.views, other.fit) < most;
+    return other;
 }
 
 //! With direct and refracted images exchanged.
-double swappedRms(const Rig& start, RigTask task)
+OtherFit fitSwapped(const Rig& start, RigTask task, double apart)
 {
     for (CameraViews& camera : task.views.cameras)
     {
         std::swap(camera.direct, camera.refracted);
         std::swap(camera.directCovariances, camera.refractedCovariances);
     }
-    return plausibleRms(start, task);
+    return fitOther(start, task, apart);
+}
+
+//! Of both images of a pair, in variances of a coordinate: squared errors, of points that were not used the largest one.
+double costOf(const Pair& p, const RigViews& views, const RigFit& fit, double variance)
+{
+    const double LARGEST = 16;
+    const CameraViews& seen = views.cameras[p.camera];
+    double cost = 0, unused = countSeen(seen.direct[p.view]) + countSeen(seen.refracted[p.view]);
+    for (int column = 2*p.camera; column < 2*p.camera + 2; column++)
+    {
+        const double rms = fit.perViewErrors.at<double>(p.view, column);
+        const int used = countNonZero(fit.inliers[fit.imageStatus.cols*p.view + column]);
+        unused -= used;
+        cost += used > 0 ? used*rms*rms/variance : 0;
+    }
+    return cost + LARGEST*unused;
+}
+
+//! More likely than chance makes it, and of more than half of the pairs.
+bool isClearlyBetter(const RigFit& other, const std::vector<Pair>& pairs, const RigViews& views, const RigFit& fit)
+{
+    const double CLEAR = 12;        // of the logarithm of the likelihood: wrong once in 10^5 times
+    const double variance = 0.5*std::pow(std::min(other.rms, fit.rms), 2);
+    double gain = 0;
+    size_t better = 0;
+    for (const Pair& p : pairs)
+    {
+        const double ofPair = 0.5*(costOf(p, views, fit, variance) - costOf(p, views, other, variance));
+        gain += ofPair;
+        better += ofPair > 0;
+    }
+    return gain > CLEAR && 2*better > pairs.size();
 }
 
 //! With the constants free that the window's effect depends on most: one layer in place of several, which would be tied.
-double otherWindowRms(Rig start, RigTask task)
+bool hasOtherWindow(Rig start, RigTask task, double apart)
 {
     for (Camera& camera : start.cameras)
     {
@@ -190,7 +297,7 @@ double otherWindowRms(Rig start, RigTask task)
         task.flags |= window.innerIndex == window.outerIndex ? GLASS_FREE_THICKNESS
                                                              : GLASS_FREE_DISTANCE | GLASS_FREE_OUTER_INDEX;
     }
-    return plausibleRms(start, task);
+    return fitOther(start, task, apart).isPlausible;
 }
 
 void throwSwapped(double rms, const char* given)
@@ -216,22 +323,27 @@ void checkPairs(const Rig& start, const Rig& fitted, const RigTask& task, const 
     // A robust fit leaves out what contradicts; with swapped images that is one image of nearly every pair.
     if (2*used.size() < pairs.size())
     {
-        const double rms = swappedRms(start, task);
-        if (std::isfinite(rms))
-            throwSwapped(rms, format("%d of %d pairs agree with no window", (int)(pairs.size() - used.size()),
-                                     (int)pairs.size()).c_str());
+        const OtherFit swapped = fitSwapped(start, task, 0);
+        if (swapped.isPlausible)
+            throwSwapped(swapped.fit.rms, format("%d of %d pairs agree with no window", (int)(pairs.size() - used.size()),
+                                                 (int)pairs.size()).c_str());
         return;
     }
     const double residual = residualOf(used, task.views, fit), displacement = displacementOf(used, task.views, fit);
-    if (!(residual > SUSPICIOUS_CONTRADICTION*displacement))
+    const double ROUNDING = 1e-6;       // part of the displacement
+    if (!(residual > ROUNDING*displacement))
+        return;
+    const bool isLarge = residual > LARGEST_CONTRADICTION*displacement, leaves = leavesScale(used, task.views, fitted, fit);
+    if (!isLarge && !leaves)
         return;
     const double apart = residualApart(used, task.views, fit, start, fitted);
-    if (!(residual > LARGEST_EXCESS*apart))
+    const bool contradicts = isLarge && residual > LARGEST_EXCESS*apart;
+    if (!contradicts && !leaves)
         return;
-    const double swapped = swappedRms(start, task);
-    if (swapped < CLEARLY_BETTER*fit.rms)
-        throwSwapped(swapped, format("to %.3g px", fit.rms).c_str());
-    if (residual > LARGEST_CONTRADICTION*displacement && !std::isfinite(otherWindowRms(start, task)))
+    const OtherFit swapped = fitSwapped(start, task, apart);
+    if (swapped.isPlausible && isClearlyBetter(swapped.fit, pairs, task.views, fit))
+        throwSwapped(swapped.fit.rms, format("to %.3g px", fit.rms).c_str());
+    if (contradicts && !hasOtherWindow(start, task, apart))
         throwContradicting(residual, apart);
 }
 
@@ -240,9 +352,9 @@ void explainRefusal(const Rig& start, RigTask task)
 {
     if (pairsOf(task.views).empty())
         return;
-    const double swapped = swappedRms(start, task);
-    if (std::isfinite(swapped))
-        throwSwapped(swapped, "not at all");
+    const OtherFit swapped = fitSwapped(start, task, 0);
+    if (swapped.isPlausible)
+        throwSwapped(swapped.fit.rms, "not at all");
     task.wantsCovariance = false;
     task.flags &= ~(GLASS_FREE_THICKNESS | GLASS_FREE_INDEX | GLASS_FREE_DISTANCE | GLASS_FREE_OUTER_INDEX);
     Rig fitted = start;
