@@ -193,6 +193,59 @@ TEST_CASE("The distance's derivative against differences", "[epipolar]")
     printNumber("refractiveEpipolarDistance's jacobian, largest difference", largest, "");
 }
 
+TEST_CASE("The derivative where the other camera's sight ends, against differences", "[epipolar]")
+{
+    const Matx33d K(800, 0, 320, 0, 800, 240, 0, 0, 1);
+    Random random(5250);
+    int cut = 0;
+    double largest = 0;
+    for (double outerIndex : { 1., 1.33 })
+        for (int which : { 1, 2 })
+            for (int i = 0; i < 10; i++)
+            {
+                const Ptr<RefractiveCamera> camera1 = RefractiveCamera::create(K, noArray(), GlassWindow(Vec3d(0.2, 0.1, 1), 10, 1.5, 50,
+                                                                                                         outerIndex));
+                const Ptr<RefractiveCamera> camera2 = RefractiveCamera::create(K, noArray(), GlassWindow(Vec3d(-0.1, 0.1, 1), 10, 1.5, 90,
+                                                                                                         outerIndex));
+                const Vec3d rvec = random.vector(0.05), T = Vec3d(-200, 0, 0) + random.vector(10);
+                const Vec4d pixels(320 + random.uniform(-100, 100), 240 + random.uniform(-100, 100), 320, 240);
+                const Vec4d off = which == 1 ? Vec4d(0, 0, -3000, random.uniform(-500, 500)) : Vec4d(3000, random.uniform(-500, 500), 0, 0);
+                const auto distanceAt = [&](const Vec4d& p, const Vec3d& r, const Vec3d& t, Mat& jacobian, Mat& depths)
+                {
+                    std::vector<double> distances;
+                    Mat status;
+                    refractiveEpipolarDistance(std::vector<Point2d>(1, Point2d(p[0], p[1])), std::vector<Point2d>(1, Point2d(p[2], p[3])),
+                                               camera1, camera2, r, t, distances, status, which, Vec2d(0, DBL_MAX), depths, jacobian);
+                    REQUIRE(status.at<uchar>(0) == REFRACT_OK);
+                    return distances[0];
+                };
+                Mat jacobian, ignored, depths;
+                const double distance = distanceAt(pixels + off, rvec, T, jacobian, depths);
+                double image[10];
+                for (int c = 0; c < 10; c++)
+                {
+                    double ends[2];
+                    const double step = c < 4 ? 0.3 : c < 7 ? 3e-4 : 0.05;
+                    for (int side = 0; side < 2; side++)
+                    {
+                        Vec4d p = pixels + off;
+                        Vec3d r = rvec, t = T;
+                        (c < 4 ? p[c] : c < 7 ? r[c - 4] : t[c - 7]) += side ? step : -step;
+                        ends[side] = distanceAt(p, r, t, ignored, ignored);
+                    }
+                    image[c] = (ends[1] - ends[0])/(2*step);
+                    const double J = jacobian.at<double>(0, c), wrong = std::abs(J - image[c])/(1 + std::abs(image[c]));
+                    CAPTURE(outerIndex, which, i, c, J, image[c], distance, depths.at<double>(0), seed());
+                    largest = std::max(largest, wrong);
+                    CHECK(wrong < 2e-4);
+                }
+                const int own = which == 1 ? 2 : 0;
+                cut += std::abs(std::hypot(image[own], image[own + 1]) - 1) < 1e-6 && depths.at<double>(0) < 200;
+            }
+    printNumber("refractiveEpipolarDistance's jacobian at ends of sight, largest difference", largest, "");
+    CHECK(cut > 20);
+}
+
 TEST_CASE("Signs, depths and ends of the curve", "[epipolar]")
 {
     Random random(5300);

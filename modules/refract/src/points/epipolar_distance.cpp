@@ -10,6 +10,7 @@ steps; one brings nearly every right match to its end. */
 #include "points/epipolar_curve.hpp"
 #include "arrays/column_output.hpp"
 #include "math/rotation.hpp"
+#include <functional>
 
 namespace cv { namespace refract {
 
@@ -269,6 +270,36 @@ void EpipolarDistance::differentiate(Matches& block, const Search& search, int n
     }
 }
 
+/** Where the nearest point of a lane is the last that the other camera sees, it moves along the edge of what that sees. The edge is
+known by bisection only, to 1e-9 of the curve; so all derivatives but those by the other's pixel are differences. */
+static void differentiateEnd(const std::function<EpipolarDistance(const Vec3d&, const Vec3d&)>& distanceOf, const Vec3d& rvec,
+                             const Vec3d& T, Matches& block, int lane)
+{
+    const double PIXELS = 0.1, RADIANS = 1e-4;
+    for (int c = 0; c < 10; c++)
+    {
+        if (c == 2 || c == 3)
+            continue;
+        const double step = c < 2 ? PIXELS : c < 7 ? RADIANS : RADIANS*std::max(norm(T), DBL_MIN);
+        double ends[2];
+        for (int side = 0; side < 2; side++)
+        {
+            Vec3d r = rvec, t = T;
+            Matches one;
+            one.status[0] = REFRACT_OK;
+            for (int k = 0; k < 2; k++)
+            {
+                one.ofCurve[k*BLOCK] = block.ofCurve[k*BLOCK + lane];
+                one.other[k*BLOCK] = block.other[k*BLOCK + lane];
+            }
+            (c < 2 ? one.ofCurve[c*BLOCK] : c < 7 ? r[c - 4] : t[c - 7]) += side ? step : -step;
+            distanceOf(r, t).evaluate(one, 1, true);
+            ends[side] = one.status[0] == REFRACT_OK && one.isCut[0] ? one.distance[0] : NaN;
+        }
+        block.jacobian[c*BLOCK + lane] = (ends[1] - ends[0])/(2*step);
+    }
+}
+
 static void distances(InputArray points1, InputArray points2, const Ptr<RefractiveCamera>& camera1,
                       const Ptr<RefractiveCamera>& camera2, InputArray R, InputArray T, OutputArray distances_,
                       OutputArray status, int whichImage, const Vec2d& depthRange, Mat* depths, Mat* jacobian)
@@ -277,8 +308,13 @@ static void distances(InputArray points1, InputArray points2, const Ptr<Refracti
         CV_Error_(Error::StsBadArg, ("whichImage is %d; it must be 1 or 2", whichImage));
     const Vec2d ends = readDepthRange(depthRange, true);
     const DepthRange range = { ends[0], ends[1] };
-    const EpipolarDistance distance(cameraOf(camera1, "camera1"), cameraOf(camera2, "camera2"), readRotation(R, "R"),
-                                    readVec3(T, "T"), whichImage, range);
+    const Camera& cam1 = cameraOf(camera1, "camera1");
+    const Camera& cam2 = cameraOf(camera2, "camera2");
+    const Matx33d turn = readRotation(R, "R");
+    const Vec3d rvec = rotationVector(turn), shift = readVec3(T, "T");
+    const EpipolarDistance distance(cam1, cam2, turn, shift, whichImage, range);
+    const auto distanceOf = [&](const Vec3d& r, const Vec3d& t)
+    { return EpipolarDistance(cam1, cam2, rotationMatrix(r), t, whichImage, range); };
     const PointReader in1(points1, 2, "points1"), in2(points2, 2, "points2");
     const int count = in1.size();
     if (count != in2.size())
@@ -306,10 +342,12 @@ static void distances(InputArray points1, InputArray points2, const Ptr<Refracti
             found.at<double>(begin + i) = ok ? block.distance[i] : NaN;
             if (depths)
                 depths->at<double>(begin + i) = ok ? block.depth[i] : NaN;
+            if (jacobian && ok && block.isCut[i])
+                differentiateEnd(distanceOf, rvec, shift, block, i);
             for (int c = 0; c < 10 && jacobian; c++)
             {
                 const int from = c < 4 && whichImage == 2 ? (c + 2) % 4 : c;
-                jacobian->at<double>(begin + i, c) = ok && !block.isCut[i] ? block.jacobian[from*BLOCK + i] : NaN;
+                jacobian->at<double>(begin + i, c) = ok ? block.jacobian[from*BLOCK + i] : NaN;
             }
         }
         outStatus.store(begin, n, block.status);
