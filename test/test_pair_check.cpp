@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // Pairs that are none: swapped arguments, images of different moments. And what must not be taken for it.
-#include "rig_scenes.hpp"
+#include "round_scenes.hpp"
 
 using namespace cv;
 using namespace cv::refract;
@@ -235,4 +235,27 @@ TEST_CASE("A fit that is bad for other reasons is returned", "[pair_check]")
         CHECK(mono.why(mono.scene.direct, mono.scene.refracted, GLASS_ROBUST) == "");
         CHECK(mono.rms < 0.2);
     }
+}
+
+TEST_CASE("Pairs through domes and tubes: right ones are fitted, swapped ones of tubes are not", "[pair_check][dome][tube]")
+{
+    Random random(830);
+    for (MakeWindow make : { domeAt, tubeAt })
+        for (double outerIndex : { 1., 1.333 })
+            for (double sigma : { 0.05, 0.2 })
+            {
+                const RigTruth truth = roundRig(make, 1, false, outerIndex, { 8, -6, 15 }, random);
+                const RigScene scene = makeRigScene(truth, 6, random, sigma);
+                CAPTURE(truth.cameras[0]->window().shape, outerIndex, sigma, seed());
+                RigCall call = callFromCentre(truth, scene, true), swapped = call;
+                swapped.cameras[0] = call.cameras[0]->clone();
+                double right = 0, other = 0;
+                CHECK(thrown([&] { right = call.run(0); }) == "");
+                std::swap(swapped.direct, swapped.refracted);
+                const std::string text = thrown([&] { other = swapped.run(0); });
+                CAPTURE(text);
+                std::cout << "[numbers] " << (make == tubeAt ? "tube" : "dome") << ", outer index " << outerIndex << ", sigma " << sigma
+                          << ": " << right << " px, swapped " << (text.empty() ? std::to_string(other) : "refused") << std::endl;
+                CHECK((make == domeAt || !text.empty()));       // a dome's center may lie on either side of the camera
+            }
 }
