@@ -25,6 +25,7 @@ caller's to see in the residuals. */
 #include "calibrate/failure.hpp"
 #include "calibrate/near_task.hpp"
 #include "arrays/views.hpp"
+#include "window/place.hpp"
 #include <numeric>
 
 namespace cv { namespace refract {
@@ -189,6 +190,8 @@ bool leavesScale(const std::vector<Pair>& pairs, const RigViews& views, const Ri
     {
         const PairImages images(p, views, fit);
         const Camera &camera = rig.cameras[p.camera], bare = withWindow(camera);
+        if (hasCenter(camera.layers().at().shape))
+            return true;        // swapped, they mirror its center, which leaves other than a scale
         const RigidTransform inCamera = transformOf(rig.extrinsics[p.camera])*transformOf(fit.poses[p.view]);
         std::vector<Point2d> place, left;
         for (size_t i = 0; i < images.image[0].size(); i++)
