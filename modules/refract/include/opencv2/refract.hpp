@@ -1088,7 +1088,8 @@ CV_EXPORTS_W void initRefractiveStereoRectifyMap(InputArray cameraMatrix, InputA
 /** @brief Computes a smooth depth of every pixel of both rectified images from a first disparity, which may be coarse and have
 gaps: for the maps of a second pass.
 @param disparity of the new image 1, or of both new images made smaller by one factor; CV_8U, CV_16S, CV_32S or CV_32F, in its
-own pixels, without fractional bits (divide what StereoSGBM gives by 16). NaN or infinite: unknown.
+own pixels, without fractional bits (divide what StereoSGBM gives by 16). NaN or infinite: unknown. Where all of it is unknown,
+so are both depths: NaN.
 @param P1 of the full size.
 @param P2 of the full size.
 @param size full size.
@@ -1208,11 +1209,12 @@ normal comes from the data. Out: the estimate.
 Throws if the data do not determine a free parameter; the text names the undetermined direction (for sealed cameras see
 GlassCalibrationFlags). The result is a minimum: the remaining step to it is below 1e-3 standard deviations. For a sealed
 camera many initial values are tried, so that its focal length must be known only to some 10 %, and its window's distance only
-to a factor of 3. Throws if the change that criteria ask for (EPS) is not reached in their iterations (COUNT); with COUNT alone
-the current result is returned. Throws if the residuals of pairs are far larger than errors of detected corners can be: direct
-and refracted points swapped, not of the same unmoved target, or of a scene in another medium. A wrong thickness or index of the
-window does not throw; it increases the returned error. Throws Error::StsNotImplemented in a build without Ceres, as the other
-forms do.
+to a factor of 3. Throws if the change that criteria ask for (EPS) is not reached in their iterations (COUNT); with COUNT
+alone the current result is returned. Throws if the residuals of pairs are far larger than errors of detected corners can be:
+direct and refracted points swapped, not of the same unmoved target, or of a scene in another medium. (Behind a pane whose
+effect is hardly more than the noise, swapped points cannot be told, and have the mirrored tilt.) A wrong thickness or index
+of the window does not throw; it increases the returned error. Throws Error::StsNotImplemented in a build without Ceres, as
+the other forms do.
 */
 CV_EXPORTS_W double calibrateGlass(InputArrayOfArrays objectPoints, InputArrayOfArrays imagePointsDirect,
         InputArrayOfArrays imagePointsRefracted, InputArray cameraMatrix, InputArray distCoeffs,
