@@ -132,13 +132,12 @@ void run(int cameras, int boards)
         start.Ts[c] = Mat::zeros(3, 1, CV_64F);
     }
     std::vector<Mat> rvecs, tvecs;
-    Mat deviations;
     const double begin = processorSeconds(), clock = (double)getTickCount();
-    const double rms = calibrateGlassRig(start.object, {}, start.images, start.cameras, std::vector<int>(cameras, 0), start.Rs,
-                                         start.Ts, rvecs, tvecs, deviations, noArray(), noArray(), noArray(), noArray(), noArray(),
-                                         GLASS_FREE_DISTANCE | GLASS_FREE_EXTRINSICS);
+    const GlassRigResult found = calibrateGlassRig(start.object, {}, start.images, start.cameras, std::vector<int>(cameras, 0), start.Rs,
+                                                   start.Ts, rvecs, tvecs, GlassRigOptions(GLASS_FREE_DISTANCE | GLASS_FREE_EXTRINSICS));
     const double seconds = processorSeconds() - begin, elapsed = ((double)getTickCount() - clock)/getTickFrequency();
-    std::printf("%10d%10d%10.1f%10.1f%12.4f%12.2f\n", cameras, boards, seconds, elapsed, rms, overStated(truth, start, deviations));
+    std::printf("%10d%10d%10.1f%10.1f%12.4f%12.2f\n", cameras, boards, seconds, elapsed, found.rms,
+                overStated(truth, start, found.stdDeviations));
     std::fflush(stdout);
 }
 

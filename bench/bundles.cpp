@@ -107,23 +107,23 @@ void run(const char* what, int views, int points, int lengths)
 {
     Tank truth = makeTank(0, views), start = makeTank(1, views);
     look(truth, points, lengths, start);
-    std::vector<Point3d> found;
-    Mat deviations, covariance, pointDeviations, perViewErrors;
+    std::vector<Point3d> points3D;
+    BundleAdjustOptions options(GLASS_FREE_EXTRINSICS | GLASS_FREE_DISTANCE);
+    options.computeViewCovariances = false;
     const double begin = processorSeconds(), clock = (double)getTickCount();
-    const double rms = refractiveBundleAdjust(start.images, start.cameras, std::vector<int>(), start.Rs, start.Ts, start.rvecs,
-                                              start.tvecs, found, start.lengths, deviations, covariance, pointDeviations,
-                                              perViewErrors, noArray(), GLASS_FREE_EXTRINSICS | GLASS_FREE_DISTANCE);
+    const BundleAdjustResult found = refractiveBundleAdjust(start.images, start.cameras, std::vector<int>(), start.Rs, start.Ts,
+                                                            start.rvecs, start.tvecs, points3D, start.lengths, options);
     const double seconds = processorSeconds() - begin, elapsed = ((double)getTickCount() - clock)/getTickFrequency();
     double squares = 0;
     for (int c = 0; c < CAMERAS; c++)
     {
         const int distance = 16*c + 11;     // fx, fy, cx, cy, k1, k2, p1, p2, normal (3), distance
         squares += std::pow((start.cameras[c]->window().distance - truth.cameras[c]->window().distance)/
-                            deviations.at<double>(distance), 2)/CAMERAS;
+                            found.stdDeviations.at<double>(distance), 2)/CAMERAS;
     }
     rusage usage;
     getrusage(RUSAGE_SELF, &usage);
-    std::printf("%-44s%10d%10d%10.1f%10.1f%10ld%12.3f%12.2f\n", what, views, points, seconds, elapsed, usage.ru_maxrss/1024, rms,
+    std::printf("%-44s%10d%10d%10.1f%10.1f%10ld%12.3f%12.2f\n", what, views, points, seconds, elapsed, usage.ru_maxrss/1024, found.rms,
                 std::sqrt(squares));
     std::fflush(stdout);
 }

@@ -244,13 +244,11 @@ Survey makeSurvey(const Strip& strip)
 }
 
 //! What was found.
-struct Found
+struct Found : BundleAdjustResult
 {
-    double rms, cpu, clock;
-    std::vector<Mat> rvecs, tvecs, viewCovariances;
+    double cpu, clock;
+    std::vector<Mat> rvecs, tvecs;
     std::vector<Point3d> points;
-    Mat pointDeviations, deviations;
-    std::vector<uchar> inliers;
     Ptr<RefractiveCamera> camera;
 };
 
@@ -259,7 +257,7 @@ Found adjust(const Strip& strip, const Survey& survey)
 {
     std::mt19937_64 engine(strip.startSeed);
     Found found;
-    Mat prior, covariance, perViewErrors;
+    Mat prior;
     found.camera = makeCamera(strip.hasWindow, &engine, prior);
     for (size_t view = 0; view < survey.rvecs.size(); view++)
     {
@@ -272,13 +270,12 @@ Found adjust(const Strip& strip, const Survey& survey)
         found.tvecs.push_back(Mat(-(offR*centre), true));
     }
     found.points.assign(survey.points.size(), Point3d(NAN, NAN, NAN));
-    const int flags = (strip.wrong > 0 ? GLASS_ROBUST : 0) | (strip.hasWindow ? 0 : GLASS_FIX_NORMAL);
+    BundleAdjustOptions options((strip.wrong > 0 ? GLASS_ROBUST : 0) | (strip.hasWindow ? 0 : GLASS_FIX_NORMAL));
+    options.rigCovariance = prior;
     const double begin = processorSeconds(), clock = (double)getTickCount();
     std::vector<Mat> Rs, Ts;
-    found.rms = refractiveBundleAdjust(survey.observations, survey.pixels, { found.camera }, {}, Rs, Ts, found.rvecs, found.tvecs,
-                                       found.points, survey.lengths, found.deviations, covariance, found.viewCovariances,
-                                       found.pointDeviations, perViewErrors, found.inliers, flags, noArray(),
-                                       TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 1000, 1e-12), noArray(), noArray(), prior);
+    static_cast<BundleAdjustResult&>(found) = refractiveBundleAdjust(survey.observations, survey.pixels, { found.camera }, {}, Rs, Ts,
+                                                                     found.rvecs, found.tvecs, found.points, survey.lengths, options);
     found.cpu = processorSeconds() - begin;
     found.clock = ((double)getTickCount() - clock)/getTickFrequency();
     return found;
@@ -322,9 +319,9 @@ double cameraOverStated(const Survey& survey, const Found& found)
     double sum = 0;
     int count = 0;
     for (int i = 0; i < (int)truth.size(); i++)
-        if (found.deviations.at<double>(i) > 0)
+        if (found.stdDeviations.at<double>(i) > 0)
         {
-            sum += std::pow((own[i] - truth[i])/found.deviations.at<double>(i), 2);
+            sum += std::pow((own[i] - truth[i])/found.stdDeviations.at<double>(i), 2);
             count++;
         }
     return std::sqrt(sum/count);
@@ -349,7 +346,7 @@ double run(const Strip& strip, double secondsBefore, int viewsBefore)
     std::vector<uchar> isPulled(survey.points.size(), 0);
     size_t lost[2] = { 0, 0 }, good[2] = { 0, 0 }, kept = 0;
     for (size_t i = 0; i < survey.isWrong.size(); i++)
-        if (survey.isWrong[i] && found.inliers[i])
+        if (survey.isWrong[i] && found.inliers[0].at<uchar>((int)i))
             isPulled[survey.observations[i][2]] = 1;
     for (size_t i = 0; i < survey.isWrong.size(); i++)
     {
@@ -357,8 +354,8 @@ double run(const Strip& strip, double secondsBefore, int viewsBefore)
         if (!std::isfinite(found.points[point].x))
             continue;
         good[isPulled[point]] += !survey.isWrong[i];
-        lost[isPulled[point]] += !survey.isWrong[i] && !found.inliers[i];
-        kept += survey.isWrong[i] && found.inliers[i];
+        lost[isPulled[point]] += !survey.isWrong[i] && !found.inliers[0].at<uchar>((int)i);
+        kept += survey.isWrong[i] && found.inliers[0].at<uchar>((int)i);
     }
     rusage usage;
     getrusage(RUSAGE_SELF, &usage);

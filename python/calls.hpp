@@ -11,6 +11,7 @@ enum Kind
     OUTPUT, OUTPUTS,                                    // an array to write into
     CAMERA, CAMERAS, WINDOW, NUMBER, NUMBER_OR_NONE,
     INTEGER, INTEGER_64, BOOLEAN, PAIR, VECTOR, INTEGERS, TEXT, TEXTS, CRITERIA, NODE, STORAGE,
+    RIG_OPTIONS, BUNDLE_OPTIONS,
     GlassCalibrationFlags, TriangulateFlags, RectifyFlags
 };
 
@@ -106,6 +107,8 @@ static const char* mismatch(PyObject* o, const Argument& argument)
     case TEXT: return isText(o) ? NULL : "a str or a path";
     case TEXTS: return isListOfTexts(o) ? NULL : "a list of str";
     case CRITERIA: return isList(o) ? NULL : "a tuple (type, iterations, epsilon)";
+    case RIG_OPTIONS: return isOf(o, pyopencv_refract_GlassRigOptions_TypePtr) ? NULL : "a GlassRigOptions";
+    case BUNDLE_OPTIONS: return isOf(o, pyopencv_refract_BundleAdjustOptions_TypePtr) ? NULL : "a BundleAdjustOptions";
     case NODE: return isOf(o, pyopencv_FileNode_TypePtr) ? NULL : "a FileNode";
     case STORAGE: return isOf(o, pyopencv_FileStorage_TypePtr) ? NULL : "a FileStorage";
     default: return isInteger(o) ? NULL : "flags";
@@ -305,19 +308,30 @@ static const int FIX_OF_LENS = refract::GLASS_FIX_PRINCIPAL_POINT | refract::GLA
     | refract::GLASS_FIX_K2 | refract::GLASS_FIX_K3 | refract::GLASS_FIX_K4 | refract::GLASS_FIX_K5 | refract::GLASS_FIX_K6
     | refract::GLASS_FIX_TANGENT_DIST | refract::GLASS_FIX_S1_S2_S3_S4 | refract::GLASS_FIX_TAUX_TAUY;
 
+//! Whether a field of options has an array.
+static bool hasArray(PyObject* options, const char* field)
+{
+    PySafeObject value(PyObject_HasAttrString(options, field) ? PyObject_GetAttrString(options, field) : NULL);
+    return value && (PyTuple_Check(value) ? PyTuple_Size(value) > 0 : value != Py_None);
+}
+
 //! A plain number may be a flag of cv2, which means something else here; false and an exception then.
 static bool checkFlags(const Call& call, const Form& form, PyObject* args, PyObject* keywords)
 {
-    PyObject *flags = NULL, *priors = NULL;
+    PyObject *flags = NULL, *options = NULL;
     for (int i = 0; i < form.count; i++)
     {
         if (form.arguments[i].kind == GlassCalibrationFlags)
             flags = given(form, i, args, keywords);
-        else if (strcmp(form.arguments[i].name, "cameraCovariances") == 0)
-            priors = given(form, i, args, keywords);
+        else if (form.arguments[i].kind == RIG_OPTIONS || form.arguments[i].kind == BUNDLE_OPTIONS)
+            options = given(form, i, args, keywords);
     }
+    PySafeObject ofOptions(options && options != Py_None ? PyObject_GetAttrString(options, "flags") : NULL);
+    if (ofOptions)
+        flags = ofOptions;
     if (!flags || flags == Py_None)
         return true;
+    const bool hasPriors = ofOptions && (hasArray(options, "cameraCovariances") || hasArray(options, "rigCovariance"));
     const long value = PyLong_AsLong(flags);
     if (value == -1 && PyErr_Occurred())
         return false;
@@ -327,7 +341,7 @@ static bool checkFlags(const Call& call, const Form& form, PyObject* args, PyObj
                      "here (a number of your own: GlassCalibrationFlags(%ld))", call.name, value, value));
         return false;
     }
-    if (!(value & FIX_OF_LENS) || (value & refract::GLASS_FREE_INTRINSICS) || priors || call.returnsFlags)
+    if (!(value & FIX_OF_LENS) || (value & refract::GLASS_FREE_INTRINSICS) || hasPriors || call.returnsFlags)
         return true;
     return PyErr_WarnFormat(PyExc_UserWarning, 1, "%s: a lens parameter is fixed (%s), but without GLASS_FREE_INTRINSICS the "
                             "whole lens is: this flag has no effect", call.name, textOf(flags).c_str()) == 0;
@@ -353,7 +367,8 @@ static PyObject* withFlags(PyObject* results)
 static bool takesFlags(const Form& form)
 {
     for (int i = form.count - 1; i >= 0; i--)
-        if (form.arguments[i].kind == GlassCalibrationFlags)
+        if (form.arguments[i].kind == GlassCalibrationFlags || form.arguments[i].kind == RIG_OPTIONS
+            || form.arguments[i].kind == BUNDLE_OPTIONS)
             return true;
     return false;
 }

@@ -81,14 +81,15 @@ static bool fromItems(PyObject* o, std::vector<T>& v, const ArgInfo& info)
         return false;
     }
     const Py_ssize_t count = PySequence_Size(o);
-    v.resize((size_t)std::max<Py_ssize_t>(count, 0));
+    std::vector<T> items((size_t)std::max<Py_ssize_t>(count, 0));       // not into what was there: None is an empty one
     for (Py_ssize_t i = 0; i < count; i++)
     {
         const String name = format("%s[%d]", info.name, (int)i);
         PySafeObject item(PySequence_GetItem(o, i));
-        if (!item || !pyopencv_to(item, v[(size_t)i], ArgInfo(name.c_str(), info.outputarg)))
+        if (!item || !pyopencv_to(item, items[(size_t)i], ArgInfo(name.c_str(), info.outputarg)))
             return false;
     }
+    v.swap(items);
     return count >= 0;
 }
 
@@ -268,4 +269,29 @@ static PyObject* fromOutput(const std::vector<Mat>& v, int channels, int depth)
             return NULL;
     }
     return items.release();
+}
+
+//! A field of a result: masks are the only arrays of a list of which one may be empty.
+template<typename T> static PyObject* fromResult(const T& value) { return pyopencv_from(value); }
+static PyObject* fromResult(const Mat& m) { return fromOutput(m, 0, CV_64F); }
+static PyObject* fromResult(const std::vector<Mat>& v) { return fromOutput(v, 1, CV_8U); }
+
+template<typename T> static T ownCopy(const T& value) { return value; }
+static Mat ownCopy(const Mat& m) { return m.clone(); }
+template<typename T> static std::vector<T> ownCopy(const std::vector<T>& values)
+{
+    std::vector<T> copies;
+    for (const T& value : values)
+        copies.push_back(ownCopy(value));
+    return copies;
+}
+
+//! Into a field: all of it or, where it cannot be, nothing; arrays are no longer those of the caller.
+template<typename T> static bool takeField(PyObject* o, T& field, const ArgInfo& info)
+{
+    T theirs = T();
+    if (!pyopencv_to_safe(o, theirs, info))
+        return false;
+    field = ownCopy(theirs);
+    return true;
 }

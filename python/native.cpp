@@ -123,6 +123,7 @@ static PyObject* makeType(PyType_Spec& spec, destructor destruct, reprfunc repr,
 #include "pyopencv_generated_funcs.h"
 #include "pyopencv_generated_modules_content.h"
 #include "window.hpp"
+#include "options.hpp"
 
 static bool addFunctionsAndConstants(PyObject* module, PyMethodDef* methods, const ConstDef* constants)
 {

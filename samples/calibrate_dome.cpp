@@ -86,17 +86,18 @@ int main(int argc, char** argv)
         seen[1].push_back(Mat(look(object[view], truth[1], rvec2, R*tvec + T, rng), true));
     }
     std::vector<Mat> rvecs, tvecs;
-    Mat deviations, covariance;
-    const double rms = calibrateGlassRig(object, std::vector<std::vector<Mat> >(), seen, found, std::vector<int>(), Rs, Ts, rvecs, tvecs,
-                                         deviations, covariance, noArray(), noArray(), noArray(), noArray(), 0, noArray(),
-                                         TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 100, 1e-10), priors);
-    std::cout << format("15 boards under water: RMS %.3f px", rms) << std::endl;
+    GlassRigOptions options;
+    options.cameraCovariances = priors;
+    const GlassRigResult result = calibrateGlassRig(object, std::vector<std::vector<Mat> >(), seen, found, std::vector<int>(), Rs, Ts,
+                                                    rvecs, tvecs, options);
+    std::cout << format("15 boards under water: RMS %.3f px", result.rms) << std::endl;
     const int first = (int)found[0]->lensParameters().total(), count = (int)found[0]->parameterNames().size();
     for (int c = 0; c < 2; c++)
     {
         const Vec3d center = found[c]->window().center;
         std::cout << format("centre of dome %d: (%.3f, %.3f, %.3f) mm, off by %.3f, stated +- %.3f", c + 1, center[0], center[1], center[2],
-                            norm(center - centers[c]), norm(deviations.rowRange(c*count + first, c*count + first + 3))) << std::endl;
+                            norm(center - centers[c]),
+                            norm(result.stdDeviations.rowRange(c*count + first, c*count + first + 3))) << std::endl;
     }
 
     std::vector<Point3d> points;

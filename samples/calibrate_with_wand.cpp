@@ -85,13 +85,12 @@ int main()
     for (const Mat& ofCamera : pixels)
         images.push_back(std::vector<Mat>(1, ofCamera));
     std::vector<Point3d> points;
-    Mat deviations, covariance, pointDeviations, perViewErrors;
-    const int flags = refract::GLASS_FREE_EXTRINSICS | refract::GLASS_FREE_DISTANCE;
-    const double rms = refract::refractiveBundleAdjust(images, rig.cameras, std::vector<int>(), rig.Rs, rig.Ts, noArray(),
-                                                       noArray(), points, lengths, deviations, covariance, pointDeviations,
-                                                       perViewErrors, noArray(), flags);
+    const refract::BundleAdjustOptions options(refract::GLASS_FREE_EXTRINSICS | refract::GLASS_FREE_DISTANCE);
+    const refract::BundleAdjustResult result = refract::refractiveBundleAdjust(
+        images, rig.cameras, std::vector<int>(), rig.Rs, rig.Ts, noArray(), noArray(), points, lengths, options);
+    const Mat& deviations = result.stdDeviations;
 
-    std::cout << format("%d moments of a wand, %.3f px RMS; truth and result, with one standard deviation:\n", MOMENTS, rms);
+    std::cout << format("%d moments of a wand, %.3f px RMS; truth and result, with one standard deviation:\n", MOMENTS, result.rms);
     bool isGood = true;
     int row = 0;        // of the deviations: each camera's parameters, then rvec and T of each camera but the first
     for (size_t c = 0; c < rig.cameras.size(); c++)

@@ -120,10 +120,10 @@ int main()
     const Ptr<refract::RefractiveCamera> camera = refract::RefractiveCamera::create(K, D, straight);
     const std::vector<std::vector<Point3d> > targets(VIEWS, board());
     const double turn = ROBOT_RAD*ROBOT_RAD, move = ROBOT_MM*ROBOT_MM;
-    const Mat covariance = Mat::diag(Mat(Vec6d(turn, turn, turn, move, move, move)));
-    Mat deviations;
+    refract::GlassRigOptions options(refract::GLASS_USE_POSES);
+    options.poseCovariances.assign(VIEWS, Mat::diag(Mat(Vec6d(turn, turn, turn, move, move, move))));
+    refract::GlassRigResult result;
     Affine3d eye;
-    double rms = 0;
     double moved = 1;
     int rounds = 0;
     for (; rounds < 100 && moved > 1e-5; rounds++)
@@ -139,20 +139,19 @@ int main()
             rvecs.push_back(Mat(pose.rvec(), true));
             tvecs.push_back(Mat(pose.translation(), true));
         }
-        rms = refract::calibrateGlassRig(targets, std::vector<std::vector<Mat> >(),
-                                         std::vector<std::vector<Mat> >(1, recording.pixels),
-                                         std::vector<Ptr<refract::RefractiveCamera> >(1, camera), std::vector<int>(), Rs, Ts,
-                                         rvecs, tvecs, deviations, noArray(), noArray(), noArray(), noArray(), noArray(),
-                                         refract::GLASS_USE_POSES, std::vector<Mat>(VIEWS, covariance));
+        result = refract::calibrateGlassRig(targets, std::vector<std::vector<Mat> >(),
+                                            std::vector<std::vector<Mat> >(1, recording.pixels),
+                                            std::vector<Ptr<refract::RefractiveCamera> >(1, camera), std::vector<int>(), Rs, Ts,
+                                            rvecs, tvecs, options);
         moved = norm(camera->window().normal - before);
     }
 
-    std::cout << format("%d rounds, %.3f px RMS; truth and result, with one standard deviation:\n", rounds, rms);
+    std::cout << format("%d rounds, %.3f px RMS; truth and result, with one standard deviation:\n", rounds, result.rms);
     bool isGood = true;
     for (int i = 0; i < 2; i++)
     {
         const double expected = truth->window().normal[i], found = camera->window().normal[i];
-        const double sigma = deviations.at<double>(8 + i);      // fx, fy, cx, cy, k1, k2, p1, p2, normal, ...
+        const double sigma = result.stdDeviations.at<double>(8 + i);      // fx, fy, cx, cy, k1, k2, p1, p2, normal, ...
         std::cout << format("normal[%d] %8.5f  found %8.5f +- %.5f\n", i, expected, found, sigma);
         isGood = isGood && std::abs(found - expected) < 4*sigma;
     }

@@ -116,26 +116,22 @@ int main(int argc, char** argv)
 
     // All points, and R and T of camera 2 within what it may have turned; the rest stays. Wrong matches are left out.
     const int place = (int)(cameras[0]->parameterNames().size() + cameras[1]->parameterNames().size());
-    Mat known = Mat::zeros(place + 6, place + 6, CV_64F);
-    covarianceOfTurn(Rs[1], Ts[1], MAY_TURN*CV_PI/180).copyTo(known(Rect(place, place, 6, 6)));
+    refract::BundleAdjustOptions options(refract::GLASS_FIX_NORMAL | refract::GLASS_ROBUST);
+    options.rigCovariance = Mat::zeros(place + 6, place + 6, CV_64F);
+    covarianceOfTurn(Rs[1], Ts[1], MAY_TURN*CV_PI/180).copyTo(options.rigCovariance(Rect(place, place, 6, 6)));
     const std::vector<std::vector<Mat> > pixels = { { Mat(near.left) }, { Mat(near.right) } };
     std::vector<Point3d> points;
-    std::vector<Mat> inliers;
-    Mat covariance;
-    const double rms = refract::refractiveBundleAdjust(pixels, cameras, std::vector<int>(), Rs, Ts, noArray(), noArray(), points,
-                                                       noArray(), noArray(), covariance, noArray(), noArray(), inliers,
-                                                       refract::GLASS_FIX_NORMAL | refract::GLASS_ROBUST, noArray(),
-                                                       TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 1000, 1e-12),
-                                                       noArray(), std::vector<std::vector<Mat> >(), known);
+    const refract::BundleAdjustResult result = refract::refractiveBundleAdjust(pixels, cameras, std::vector<int>(), Rs, Ts, noArray(),
+                                                                               noArray(), points, noArray(), options);
     Vec3d turned;
     Rodrigues(Rs[1]*before.t(), turned);
     std::cout << format("%zu of %zu matches are near their curves, %d agree; %.3f px RMS\n", near.left.size(), all.left.size(),
-                        countNonZero(inliers[0]), rms);
+                        countNonZero(result.inliers[0]), result.rms);
     bool isGood = true;
     const double truth[] = { -bump, 0, 0 };
     for (int i = 0; i < 3; i++)
     {
-        const double found = turned[i]*180/CV_PI, std = std::sqrt(covariance.at<double>(place + i, place + i))*180/CV_PI;
+        const double found = turned[i]*180/CV_PI, std = std::sqrt(result.covariance.at<double>(place + i, place + i))*180/CV_PI;
         isGood &= std::abs(found - truth[i]) < 4*std;
         std::cout << format("camera 2 turned about %c by %7.4f +- %.4f degrees (true: %.4f)\n", "xyz"[i], found, std, truth[i]);
     }

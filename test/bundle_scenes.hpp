@@ -116,7 +116,7 @@ inline void keepWhatAllSee(BundleScene& scene)
 
 /** Arguments and results of one call. The start: the true lens; windows that look straight ahead, at so much of their distance;
 R, T and the poses off by so many degrees and hundredths of the range, but for the first pose, which stays. off 0: the truth. */
-struct BundleCall
+struct BundleCall : cv::refract::BundleAdjustResult
 {
     BundleCall(const RigTruth& rig, const BundleScene& scene, Random& random, double off = 1, double distance = 1)
         : lengths(scene.lengths), windows(rig.windows)
@@ -144,28 +144,31 @@ struct BundleCall
         }
     }
 
-    double run(int flags)
+    double run(const cv::refract::BundleAdjustOptions& options)
     {
-        return cv::refract::refractiveBundleAdjust(images, cameras, windows, Rs, Ts, rvecs, tvecs, points, lengths, deviations,
-                                                   covariance, pointDeviations, perViewErrors, inliers, flags, poseCovariances);
+        static_cast<cv::refract::BundleAdjustResult&>(*this) =
+            cv::refract::refractiveBundleAdjust(images, cameras, windows, Rs, Ts, rvecs, tvecs, points, lengths, options);
+        return rms;
     }
 
     //! With what is known of the rig, and of an error that all lengths share.
     double run(const cv::Mat& rigCovariance, double lengthScaleStd, int flags)
     {
-        return cv::refract::refractiveBundleAdjust(images, cameras, windows, Rs, Ts, rvecs, tvecs, points, lengths, deviations,
-                                                   covariance, pointDeviations, perViewErrors, inliers, flags, poseCovariances,
-                                                   cv::TermCriteria(3, 1000, 1e-12), cv::noArray(), {}, rigCovariance,
-                                                   lengthScaleStd);
+        cv::refract::BundleAdjustOptions options(flags);
+        options.poseCovariances = poseCovariances;
+        options.rigCovariance = rigCovariance;
+        options.lengthScaleStd = lengthScaleStd;
+        return run(options);
     }
+
+    double run(int flags) { return run(cv::Mat(), 0, flags); }
 
     std::vector<std::vector<cv::Mat> > images;
     std::vector<cv::Vec4d> lengths;
     std::vector<cv::Ptr<RefractiveCamera> > cameras;
     std::vector<int> windows;
-    std::vector<cv::Mat> Rs, Ts, rvecs, tvecs, inliers, poseCovariances;
+    std::vector<cv::Mat> Rs, Ts, rvecs, tvecs, poseCovariances;
     std::vector<cv::Point3d> points;
-    cv::Mat deviations, covariance, pointDeviations, perViewErrors;
 };
 
 /** The Cramer-Rao bound from refractiveProjectPoints' derivatives alone: covariance of all cameras' windows (in the order of

@@ -110,7 +110,7 @@ struct TankRig
 
 /** calibrateGlassRig of a TankRig that is sealed: all that is known of a lens is its focal length to 10 %, of a window what it
 is made of and its distance to a factor of 3; nothing is known of where the cameras are. */
-struct CrudeCall
+struct CrudeCall : cv::refract::GlassRigResult
 {
     //! @param random chooses the start; null: the truth, from where it goes downhill only, as its lenses count as known.
     CrudeCall(const TankRig& tank, Random* random) : object(1, tank.target), windows(tank.rig.windows)
@@ -145,12 +145,11 @@ struct CrudeCall
     double run(int flags = 0)
     {
         using namespace cv::refract;
-        return calibrateGlassRig(object, std::vector<std::vector<cv::Mat> >(), refracted, cameras, windows, Rs, Ts, rvecs, tvecs,
-                                 deviations, covariance, cv::noArray(), cv::noArray(), cv::noArray(), otherMinima,
-                                 flags | GLASS_FREE_INTRINSICS | GLASS_FREE_DISTANCE | GLASS_FREE_EXTRINSICS |
-                                 GLASS_FIX_TANGENT_DIST,
-                                 cv::noArray(), cv::TermCriteria(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 1000, 1e-12),
-                                 nothingKnown);
+        GlassRigOptions options(flags | GLASS_FREE_INTRINSICS | GLASS_FREE_DISTANCE | GLASS_FREE_EXTRINSICS | GLASS_FIX_TANGENT_DIST);
+        options.cameraCovariances = nothingKnown;
+        static_cast<GlassRigResult&>(*this) = calibrateGlassRig(object, std::vector<std::vector<cv::Mat> >(), refracted, cameras, windows,
+                                                                Rs, Ts, rvecs, tvecs, options);
+        return rms;
     }
 
     //! How little worse the second best minimum is; infinite if there is none.
@@ -168,7 +167,6 @@ struct CrudeCall
     std::vector<cv::Ptr<RefractiveCamera> > cameras;
     std::vector<int> windows;
     std::vector<cv::Mat> Rs, Ts, rvecs, tvecs, nothingKnown;
-    cv::Mat deviations, covariance, otherMinima;
 };
 
 } // namespace scenes

@@ -11,13 +11,13 @@
 namespace scenes {
 
 //! @param priors of each camera, or empty
-inline cv::refract::FitStatistics refit(RigCall& call, int flags, const std::vector<cv::Mat>& priors = std::vector<cv::Mat>())
+inline double refit(RigCall& call, int flags, const std::vector<cv::Mat>& priors = std::vector<cv::Mat>())
 {
-    return cv::refract::fitGlassRig(call.object, call.direct, call.refracted, call.cameras, call.windows, call.Rs, call.Ts, call.rvecs,
-                                    call.tvecs, call.deviations, call.covariance, call.perViewErrors, call.imageStatus, call.inliers,
-                                    call.otherMinima, cv::noArray(), cv::noArray(), flags | cv::refract::FROM_EARLIER_FIT,
-                                    call.poseCovariances,
-                                    cv::TermCriteria(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 1000, 1e-12), priors);
+    cv::refract::GlassRigOptions options(flags | cv::refract::FROM_EARLIER_FIT);
+    options.poseCovariances = call.poseCovariances;
+    options.cameraCovariances = priors;
+    return call.keep(cv::refract::fitGlassRig(call.object, call.direct, call.refracted, call.cameras, call.windows, call.Rs, call.Ts,
+                                              call.rvecs, call.tvecs, options));
 }
 
 } // namespace scenes

@@ -131,7 +131,7 @@ inline std::vector<cv::Mat> vectorsOf(const std::vector<cv::Vec3d>& vectors)
 
 /** Arguments and results of one call. The start: the true lens, R and T; windows that look straight ahead, at nine tenths of
 their distance. */
-struct RigCall
+struct RigCall : cv::refract::GlassRigResult
 {
     RigCall(const RigTruth& rig, const RigScene& scene, bool paired) : object(scene.object), windows(rig.windows)
     {
@@ -150,21 +150,32 @@ struct RigCall
         }
     }
 
+    double run(const cv::refract::GlassRigOptions& options)
+    {
+        return keep(cv::refract::calibrateGlassRig(object, direct, refracted, cameras, windows, Rs, Ts, rvecs, tvecs, options));
+    }
+
+    double keep(const cv::refract::GlassRigResult& result)
+    {
+        static_cast<cv::refract::GlassRigResult&>(*this) = result;
+        return rms;
+    }
+
     double run(int flags)
     {
-        return cv::refract::calibrateGlassRig(object, direct, refracted, cameras, windows, Rs, Ts, rvecs, tvecs, deviations,
-                                              covariance, perViewErrors, imageStatus, inliers, otherMinima, flags,
-                                              poseCovariances);
+        cv::refract::GlassRigOptions options(flags);
+        options.poseCovariances = poseCovariances;
+        return run(options);
     }
 
     //! @param priors of each camera; of the targets, see targetCovariance(): empty, they are exact
     double run(int flags, const std::vector<cv::Mat>& priors, const cv::Mat& ofTargets = cv::Mat())
     {
-        cv::Mat targetErrors;
-        return cv::refract::calibrateGlassRig(object, direct, refracted, cameras, windows, Rs, Ts, rvecs, tvecs, deviations, covariance,
-                                              perViewErrors, imageStatus, inliers, otherMinima, ofTargets, targetErrors, flags,
-                                              cv::noArray(), cv::TermCriteria(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 300, 1e-12),
-                                              priors);
+        cv::refract::GlassRigOptions options(flags);
+        options.criteria.maxCount = 300;
+        options.cameraCovariances = priors;
+        options.targetCovariance = ofTargets;
+        return run(options);
     }
 
     static std::vector<cv::Mat> mats(const PixelViews& views)
@@ -179,8 +190,7 @@ struct RigCall
     std::vector<std::vector<cv::Mat> > refracted, direct;
     std::vector<cv::Ptr<RefractiveCamera> > cameras;
     std::vector<int> windows;
-    std::vector<cv::Mat> Rs, Ts, rvecs, tvecs, inliers, poseCovariances;
-    cv::Mat deviations, covariance, perViewErrors, imageStatus, otherMinima;
+    std::vector<cv::Mat> Rs, Ts, rvecs, tvecs, poseCovariances;
 };
 
 //! e^T C^+ e for the rows of the errors e in a covariance.

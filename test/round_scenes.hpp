@@ -179,7 +179,7 @@ inline RoundTrial runRoundTrial(MakeWindow make, const Flow& flow, const Given& 
     const std::vector<double> ofFirst = windowErrors(call.cameras[0]->window(), exact);
     std::vector<int> rows;
     for (int i = 0; i < (int)ofFirst.size(); i++)
-        if (call.deviations.at<double>(LENS_PARAMETERS + i) > 0)
+        if (call.stdDeviations.at<double>(LENS_PARAMETERS + i) > 0)
             rows.push_back(LENS_PARAMETERS + i);
     const std::vector<int> place = placeRows(exact);
     const int freedom = freedomOfPlace(exact), others = (int)(rows.size() - place.size());

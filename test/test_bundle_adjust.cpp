@@ -56,7 +56,7 @@ TEST_CASE("A wand of known length is all that a standing rig needs", "[bundle]")
     }
     CHECK(largestPointError(call, scene) < 1e-4);
     const int P = 3*(8 + 8) + 12;
-    CHECK(call.deviations.size() == Size(1, P));
+    CHECK(call.stdDeviations.size() == Size(1, P));
     CHECK(call.covariance.size() == Size(P, P));
     CHECK(call.pointDeviations.size() == Size(3, 120));
     CHECK(call.perViewErrors.size() == Size(3, 1));
@@ -172,7 +172,7 @@ TEST_CASE("Rotations that are known, as of an IMU, need no pose, and poses witho
         CHECK(call.run(GLASS_USE_POSES) < 1e-6);
         CHECK(normalError(call, one, 0) < 1e-5);
         CHECK(largestPointError(call, scene) < 1e-3);
-        CHECK(call.deviations.at<double>(8) > 0);
+        CHECK(call.stdDeviations.at<double>(8) > 0);
     }
 }
 
@@ -334,7 +334,7 @@ TEST_CASE("Results do not depend on the number of threads", "[bundle]")
         CAPTURE(k + 1);
         CHECK(rms[k] == rms[0]);
         CHECK(largestDifference(one.covariance, other.covariance) == 0);
-        CHECK(largestDifference(one.deviations, other.deviations) == 0);
+        CHECK(largestDifference(one.stdDeviations, other.stdDeviations) == 0);
         CHECK(largestDifference(one.pointDeviations, other.pointDeviations) == 0);
         CHECK(largestDifference(one.perViewErrors, other.perViewErrors) == 0);
         CHECK(largestDifference(Mat(one.points), Mat(other.points)) == 0);
@@ -423,13 +423,13 @@ TEST_CASE("An earlier calibration has its say in a bundle: all, nothing, and in 
     {
         const double byT = known.Ts[1].at<double>(i) - free.Ts[1].at<double>(i);
         const double byNormal = known.cameras[1]->window().normal[i] - free.cameras[1]->window().normal[i];
-        CHECK(std::abs(byT) < 0.05*free.deviations.at<double>(35 + i));
-        CHECK(std::abs(byNormal) < 0.05*free.deviations.at<double>(16 + 8 + i));
+        CHECK(std::abs(byT) < 0.05*free.stdDeviations.at<double>(35 + i));
+        CHECK(std::abs(byNormal) < 0.05*free.stdDeviations.at<double>(16 + 8 + i));
     }
     for (int i = 0; i < P; i++)
     {
         CAPTURE(i);
-        CHECK(known.deviations.at<double>(i) == Approx(free.deviations.at<double>(i)).epsilon(0.02).margin(1e-12));
+        CHECK(known.stdDeviations.at<double>(i) == Approx(free.stdDeviations.at<double>(i)).epsilon(0.02).margin(1e-12));
     }
     // Known as well as exactly: stays.
     Random atTruth(22);
@@ -440,7 +440,7 @@ TEST_CASE("An earlier calibration has its say in a bundle: all, nothing, and in 
     const Mat before = held.Ts[1].clone();
     held.run(exact, 0, GLASS_FIX_NORMAL);
     CHECK(largestDifference(held.Ts[1], before) < 5e-4);
-    CHECK(held.deviations.at<double>(35) == Approx(1e-4).epsilon(0.01));
+    CHECK(held.stdDeviations.at<double>(35) == Approx(1e-4).epsilon(0.01));
     // The covariance of the free fit, from which another one starts: half the variances, with the correlations.
     BundleCall again = started();
     again.cameras = free.cameras;
@@ -450,7 +450,7 @@ TEST_CASE("An earlier calibration has its say in a bundle: all, nothing, and in 
     for (int i = 0; i < P; i++)
     {
         CAPTURE(i);
-        CHECK(again.deviations.at<double>(i) == Approx(free.deviations.at<double>(i)*std::sqrt(0.5)).epsilon(0.1).margin(1e-12));
+        CHECK(again.stdDeviations.at<double>(i) == Approx(free.stdDeviations.at<double>(i)*std::sqrt(0.5)).epsilon(0.1).margin(1e-12));
     }
 }
 
@@ -469,14 +469,14 @@ TEST_CASE("An error that all lengths share is in every length, however many ther
         return call;
     };
     const BundleCall own = fitted(0), shared = fitted(SHARED);
-    const int P = (int)own.deviations.total();
-    REQUIRE((int)shared.deviations.total() == P);
+    const int P = (int)own.stdDeviations.total();
+    REQUIRE((int)shared.stdDeviations.total() == P);
     // Nearly all lengths of the problem scale with those that are given; thickness is given by itself.
     for (int i = 0; i < 3; i++)
     {
-        const double T = own.Ts[2].at<double>(i), alone = own.deviations.at<double>(P - 3 + i);
+        const double T = own.Ts[2].at<double>(i), alone = own.stdDeviations.at<double>(P - 3 + i);
         const double expected = std::sqrt(alone*alone + std::pow(SHARED*T, 2));
-        CHECK(shared.deviations.at<double>(P - 3 + i) == Approx(expected).epsilon(0.1));
+        CHECK(shared.stdDeviations.at<double>(P - 3 + i) == Approx(expected).epsilon(0.1));
         CHECK(shared.Ts[2].at<double>(i) == Approx(T).epsilon(1e-4).margin(0.05));
     }
     for (size_t i = 0; i < scene.points.size(); i += 7)
@@ -516,11 +516,10 @@ TEST_CASE("What is no covariance of the rig is refused by name", "[bundle][prior
     CHECK_THAT(fault(Mat(), -1), Contains("lengthScaleStd is -1"));
     Random start(26);
     BundleCall both(truth, scene, start, 0.5);
-    CHECK_THAT(thrown([&] { refractiveBundleAdjust(both.images, both.cameras, both.windows, both.Rs, both.Ts, both.rvecs, both.tvecs,
-                                                   both.points, both.lengths, both.deviations, both.covariance, both.pointDeviations,
-                                                   both.perViewErrors, both.inliers, 0, noArray(), TermCriteria(3, 10, 1e-6),
-                                                   std::vector<Mat>(2), {}, Mat::eye(P, P, CV_64F)); }),
-               Contains("cameraCovariances and rigCovariance are both given"));
+    BundleAdjustOptions options;
+    options.cameraCovariances.resize(2);
+    options.rigCovariance = Mat::eye(P, P, CV_64F);
+    CHECK_THAT(thrown([&] { both.run(options); }), Contains("cameraCovariances and rigCovariance are both given"));
     CHECK_THAT(fault(Mat(), NaN), Contains("lengthScaleStd"));
 }
 
@@ -536,10 +535,9 @@ TEST_CASE("Who asks a bundle adjustment for iterations alone gets them, whatever
             const RigTruth truth = oneCamera();
             const BundleScene scene = makeMovingScene(truth, 6, 50, random, 0.1);
             BundleCall call(truth, scene, random);
-            rms.push_back(refractiveBundleAdjust(call.images, call.cameras, call.windows, call.Rs, call.Ts, call.rvecs, call.tvecs,
-                                                 call.points, call.lengths, call.deviations, call.covariance, call.pointDeviations,
-                                                 call.perViewErrors, call.inliers, flags, noArray(),
-                                                 TermCriteria(TermCriteria::COUNT, 50, epsilon)));
+            BundleAdjustOptions options(flags);
+            options.criteria = TermCriteria(TermCriteria::COUNT, 50, epsilon);
+            rms.push_back(call.run(options));
         }
         CHECK(rms[0] == rms[1]);
         CHECK(rms[0] < 0.2);

@@ -103,7 +103,7 @@ Attained attained(const Situation& s, int trials, int salt)
             const double e = found.distance - truth.distance;
             a.distance += e*e/expected.at<double>(2, 2);
             a.boundOfDistance += 1;
-            a.ofDistance.add(e, call.deviations.at<double>(first + 3));
+            a.ofDistance.add(e, call.stdDeviations.at<double>(first + 3));
         }
     }
     return a;

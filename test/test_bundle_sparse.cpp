@@ -47,10 +47,16 @@ struct ListCall
     }
     double run(int flags)
     {
-        return refractiveBundleAdjust(observations, pixels, call.cameras, call.windows, call.Rs, call.Ts, call.rvecs, call.tvecs,
-                                      call.points, call.lengths, call.deviations, call.covariance, viewCovariances,
-                                      call.pointDeviations, call.perViewErrors, inliers, flags, call.poseCovariances,
-                                      TermCriteria(3, 1000, 1e-12), noArray(), pixelCovariances, rigCovariance, 0, memory);
+        BundleAdjustOptions options(flags);
+        options.poseCovariances = call.poseCovariances;
+        options.rigCovariance = rigCovariance;
+        options.covarianceMemory = memory;
+        if (!pixelCovariances.empty())
+            options.pixelCovariances = { { pixelCovariances } };
+        static_cast<BundleAdjustResult&>(call) = refractiveBundleAdjust(observations, pixels, call.cameras, call.windows, call.Rs, call.Ts,
+                                                                        call.rvecs, call.tvecs, call.points, call.lengths, options);
+        inliers = call.inliers[0];
+        return call.rms;
     }
 
     BundleCall call;
@@ -58,7 +64,6 @@ struct ListCall
     std::vector<Point2d> pixels;
     Mat pixelCovariances, rigCovariance;
     double memory = 0;
-    std::vector<Mat> viewCovariances;
     std::vector<uchar> inliers;
 };
 
@@ -112,7 +117,11 @@ TEST_CASE("A list of observations gives what the arrays give, in any order", "[b
         CHECK(list.run(flags | GLASS_FREE_DISTANCE) == rms);
         CHECK(largestDifference(Mat(list.call.points), Mat(dense.points)) == 0);
         CHECK(largestDifference(list.call.covariance, dense.covariance) == 0);
-        CHECK(largestDifference(list.call.deviations, dense.deviations) == 0);
+        CHECK(largestDifference(list.call.stdDeviations, dense.stdDeviations) == 0);
+        REQUIRE(list.call.viewCovariances.size() == dense.viewCovariances.size());
+        CHECK(largestDifference(list.call.viewCovariances[5], dense.viewCovariances[5]) == 0);
+        CHECK(list.call.pixelStd == dense.pixelStd);
+        CHECK(list.call.degreesOfFreedom == dense.degreesOfFreedom);
         CHECK(largestDifference(list.call.pointDeviations, dense.pointDeviations) == 0);
         CHECK(largestDifference(list.call.perViewErrors, dense.perViewErrors) == 0);
         int rejected = 0;
@@ -176,13 +185,13 @@ TEST_CASE("A view that nothing is seen in has no pose", "[bundle][sparse]")
         }
     list.call.rvecs[2] = Mat(Vec3d(NaN, NaN, NaN), true);
     list.run(0);
-    REQUIRE(list.viewCovariances.size() == 5);
+    REQUIRE(list.call.viewCovariances.size() == 5);
     CHECK(std::isnan(list.call.rvecs[2].at<double>(0)));
     CHECK(std::isnan(list.call.tvecs[2].at<double>(2)));
     CHECK(std::isnan(list.call.perViewErrors.at<double>(2, 1)));
-    CHECK(std::isnan(list.viewCovariances[2].at<double>(0, 0)));
-    CHECK(countNonZero(list.viewCovariances[0]) == 0);      // the frame
-    CHECK(list.viewCovariances[1].at<double>(5, 5) > 0);
+    CHECK(std::isnan(list.call.viewCovariances[2].at<double>(0, 0)));
+    CHECK(countNonZero(list.call.viewCovariances[0]) == 0);      // the frame
+    CHECK(list.call.viewCovariances[1].at<double>(5, 5) > 0);
 }
 
 TEST_CASE("What is wrong with a list is said", "[bundle][sparse]")
@@ -210,6 +219,12 @@ TEST_CASE("What is wrong with a list is said", "[bundle][sparse]")
     CHECK_THAT(fault([](ListCall& l) { l.memory = -1; }), Contains("covarianceMemory is -1"));
     CHECK_THAT(fault([](ListCall& l) { l.memory = NaN; }), Contains("covarianceMemory is nan"));
     CHECK_THAT(fault([](ListCall& l) { l.pixelCovariances = Mat::ones(3, 3, CV_64F); }), Contains("pixelCovariances"));
+    BundleAdjustOptions asImages;
+    asImages.pixelCovariances.assign(2, std::vector<Mat>(4));
+    ListCall list(start);
+    CHECK_THAT(thrown([&] { refractiveBundleAdjust(list.observations, list.pixels, list.call.cameras, list.call.windows, list.call.Rs,
+                                                   list.call.Ts, list.call.rvecs, list.call.tvecs, list.call.points, list.call.lengths,
+                                                   asImages); }), Contains("pixelCovariances is 2 lists, the first of 4 arrays"));
     CHECK_THAT(fault([](ListCall& l) { for (Point2d& p : l.pixels) p = Point2d(NaN, NaN); }), Contains("has no point that was seen"));
     // A view of two points has no pose, and is named.
     CHECK_THAT(fault([](ListCall& l)
@@ -221,10 +236,8 @@ TEST_CASE("What is wrong with a list is said", "[bundle][sparse]")
     ListCall numbers(start);        // whole numbers of floating point, as of NumPy
     Mat rows;
     Mat(numbers.observations).convertTo(rows, CV_64F);
-    Mat deviations, covariance, ofPoints, errors, inliers;
     const auto run = [&] { return refractiveBundleAdjust(rows, numbers.pixels, numbers.call.cameras, numbers.call.windows, numbers.call.Rs,
-        numbers.call.Ts, numbers.call.rvecs, numbers.call.tvecs, numbers.call.points, numbers.call.lengths, deviations, covariance,
-        noArray(), ofPoints, errors, inliers); };
+        numbers.call.Ts, numbers.call.rvecs, numbers.call.tvecs, numbers.call.points, numbers.call.lengths, BundleAdjustOptions()).rms; };
     CHECK(run() > 0);
     rows.at<Vec3d>(2)[2] = 1.5;
     CHECK_THAT(thrown(run), Contains("observations[2] is of point 1.5"));
@@ -246,26 +259,26 @@ TEST_CASE("Without memory for the views' covariances points have those of known 
     CHECK(largestDifference(Mat(little.call.points), Mat(all.call.points)) == 0);
     CHECK(largestDifference(little.call.covariance, all.call.covariance) == 0);
     CHECK(largestDifference(enough.call.pointDeviations, all.call.pointDeviations) == 0);
-    CHECK(countNonZero(little.viewCovariances[0]) == 0);        // the scene's frame
+    CHECK(countNonZero(little.call.viewCovariances[0]) == 0);        // the scene's frame
     for (int view = 1; view < 9; view++)
     {
-        CHECK(largestDifference(enough.viewCovariances[view], all.viewCovariances[view]) == 0);
-        CHECK(countNonZero(little.viewCovariances[view] == little.viewCovariances[view]) == 0);         // NaN
+        CHECK(largestDifference(enough.call.viewCovariances[view], all.call.viewCovariances[view]) == 0);
+        CHECK(countNonZero(little.call.viewCovariances[view] == little.call.viewCovariances[view]) == 0);         // NaN
     }
     // The same where cameras and views are known. The noise follows from the residuals, of fewer unknowns.
     ListCall known(little);
     known.memory = 0;
     const double rms = known.run(GLASS_FIX_NORMAL | GLASS_USE_POSES);
     CHECK(rms == Approx(all.run(0)).epsilon(1e-3));
-    double noise = 0;
+    const double noise = little.call.pixelStd/known.call.pixelStd;
     for (int i = 0; i < little.call.pointDeviations.rows; i++)
         for (int k = 0; k < 3; k++)
         {
             const double own = little.call.pointDeviations.at<double>(i, k), other = known.call.pointDeviations.at<double>(i, k);
             if (!std::isfinite(own))
                 continue;
-            noise = noise > 0 ? noise : own/other;
-            CHECK(own == Approx(noise*other).epsilon(1e-3));
+            const bool hasLength = i % 10 < 2;      // whose weight against pixels is by their noise
+            CHECK(own == Approx(noise*other).epsilon(hasLength ? 0.01 : 1e-6));
             CHECK(own < all.call.pointDeviations.at<double>(i, k));
         }
     CHECK(noise == Approx(1).epsilon(0.2));
@@ -447,7 +460,7 @@ TEST_CASE("A strip's results do not depend on the number of threads", "[bundle][
     CHECK(rms[0] == rms[1]);
     CHECK(largestDifference(calls[0].call.pointDeviations, calls[1].call.pointDeviations) == 0);
     CHECK(largestDifference(Mat(calls[0].call.points), Mat(calls[1].call.points)) == 0);
-    CHECK(largestDifference(calls[0].viewCovariances.back(), calls[1].viewCovariances.back()) == 0);
+    CHECK(largestDifference(calls[0].call.viewCovariances.back(), calls[1].call.viewCovariances.back()) == 0);
 }
 
 namespace {
@@ -533,7 +546,7 @@ void addViews(const ListCall& list, const BundleScene& scene, WrongPixels& all)
         Mat_<double> error(6, 1), solved;
         Mat(list.call.rvecs[view] - Mat(scene.rvecs[view])).copyTo(error.rowRange(0, 3));
         Mat(list.call.tvecs[view] - Mat(scene.tvecs[view])).copyTo(error.rowRange(3, 6));
-        const bool isKept = checkRange(error) && solve(list.viewCovariances[view], error, solved, DECOMP_CHOLESKY);
+        const bool isKept = checkRange(error) && solve(list.call.viewCovariances[view], error, solved, DECOMP_CHOLESKY);
         all.lostViews += !isKept;
         all.wrongViews += isKept && error.dot(solved) > 50;     // chi squared of 6: 5e-9
     }
@@ -667,15 +680,15 @@ TEST_CASE("A scene in survey coordinates is fitted as one whose origin is near",
             CHECK(std::abs(far.run(flags) - rms) < 1e-7*rms);
             const double rounding = 1e-7 + 1e-15*away, relative = 1e-5 + 1e-11*away;    // of covariances that are given
             CHECK(norm(far.call.cameras[0]->window().normal - near.call.cameras[0]->window().normal) < relative*1e-3);
-            CHECK(largestDifference(far.call.deviations, near.call.deviations) < relative*norm(near.call.deviations));
+            CHECK(largestDifference(far.call.stdDeviations, near.call.stdDeviations) < relative*norm(near.call.stdDeviations));
             CHECK(largestDifference(far.call.pointDeviations, near.call.pointDeviations) < relative*norm(near.call.pointDeviations));
             for (size_t i = 0; i < scene.points.size(); i++)
                 CHECK(norm(far.call.points[i] - Point3d(origin) - near.call.points[i]) < (arePosesKnown ? relative : rounding));
             for (size_t view = 1; view < scene.rvecs.size(); view++)
             {
                 const Mat moved = farByNear(near.call.rvecs[view], origin);
-                const Mat expected = moved*near.viewCovariances[view]*moved.t();
-                CHECK(norm(far.viewCovariances[view], expected) < 1e-5*norm(expected));
+                const Mat expected = moved*near.call.viewCovariances[view]*moved.t();
+                CHECK(norm(far.call.viewCovariances[view], expected) < 1e-5*norm(expected));
             }
         }
     }

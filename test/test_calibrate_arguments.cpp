@@ -247,7 +247,7 @@ TEST_CASE("R and Rs that are rotation vectors become those of the rig", "[calibr
     CHECK(norm(Rs[1] - expected) < 1e-12);
     RigCall pair(truth, scene, true);
     stereoCalibrateGlass(pair.object, pair.direct[0], pair.refracted[0], pair.direct[1], pair.refracted[1], pair.cameras[0],
-                         pair.cameras[1], R, T, rvecs, tvecs, noArray(), noArray(), noArray(), GLASS_FREE_EXTRINSICS);
+                         pair.cameras[1], R, T, rvecs, tvecs, GlassRigOptions(GLASS_FREE_EXTRINSICS));
     CHECK(norm(R - expected) < 1e-6);
     // What has no room for R leaves the cameras as they were.
     RigCall kept(truth, scene, true);
@@ -285,7 +285,7 @@ TEST_CASE("In air the distance of a pane may be free if its faces are not parall
             continue;
         }
         call.run(GLASS_FREE_DISTANCE);
-        const double stated = call.deviations.at<double>(call.cameras[0]->lensParameters().rows + 3);
+        const double stated = call.stdDeviations.at<double>(call.cameras[0]->lensParameters().rows + 3);
         CHECK(std::abs(call.cameras[0]->window().distance - 250) < 5*stated);
     }
 }

@@ -97,7 +97,7 @@ double pointsOverStated(const RigCall& call, const RigTruth& truth, Random& rand
     Mat J = Mat::zeros(points.rows, (int)found.size(), CV_64F);
     for (int i = 0; i < J.cols; i++)
     {
-        const double step = 1e-2*call.deviations.at<double>(i);
+        const double step = 1e-2*call.stdDeviations.at<double>(i);
         if (step == 0)
             continue;
         std::vector<double> above = found, below = found;
@@ -135,7 +135,7 @@ TEST_CASE("Pairs give normal and bow back, either way round, in air and water", 
                 REQUIRE(found.shape == WINDOW_BENT);
                 CHECK(angleBetween(found.normal, exact.normal) < 1e-3);
                 CHECK(std::abs(found.curvature - exact.curvature) < curvatureOf(0.01));
-                CHECK(call.deviations.at<double>(c*COUNT + CURVATURE) > 0);
+                CHECK(call.stdDeviations.at<double>(c*COUNT + CURVATURE) > 0);
             }
         }
 }

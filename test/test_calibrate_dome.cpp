@@ -149,7 +149,7 @@ TEST_CASE("What is known of a dome's centre is a prior", "[dome][calibrate]")
         for (int i = 0; i < 3; i++)
             prior.at<double>(CENTER + i, CENTER + i) = sigma*sigma;
         call.run(0, { prior });
-        const double found = call.deviations.at<double>(CENTER + 2);
+        const double found = call.stdDeviations.at<double>(CENTER + 2);
         CAPTURE(sigma, found);
         CHECK(found > last);
         CHECK(found <= 1.000001*sigma);

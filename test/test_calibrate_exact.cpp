@@ -95,8 +95,8 @@ TEST_CASE("Exact data give the windows back by every calibrator, straight or til
                     Mat R = pair.Rs[1], T = pair.Ts[1];
                     const auto direct = [&](int c) { return isPaired ? pair.direct[c] : none; };
                     CHECK(stereoCalibrateGlass(pair.object, direct(0), pair.refracted[0], direct(1), pair.refracted[1], pair.cameras[0],
-                                               pair.cameras[1], R, T, rvecs, tvecs, noArray(), noArray(), noArray(),
-                                               GLASS_FREE_DISTANCE | GLASS_FREE_EXTRINSICS) < 1e-6);
+                                               pair.cameras[1], R, T, rvecs, tvecs,
+                                               GlassRigOptions(GLASS_FREE_DISTANCE | GLASS_FREE_EXTRINSICS)).rms < 1e-6);
                     check(pair.cameras, truth);
 
                     BundleScene points = makeMovingScene(truth, 4, 40, random, 0);

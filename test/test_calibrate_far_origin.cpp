@@ -94,8 +94,8 @@ TEST_CASE("Known poses of targets with a far origin count as those of targets wi
     {
         CAPTURE(isExact);
         const RigCall expected = run(false, isExact), found = run(true, isExact);
-        CHECK(norm(found.cameras[0]->window().normal - expected.cameras[0]->window().normal) < 1e-2*expected.deviations.at<double>(8));
+        CHECK(norm(found.cameras[0]->window().normal - expected.cameras[0]->window().normal) < 1e-2*expected.stdDeviations.at<double>(8));
         for (int i = 8; i < 11; i++)
-            CHECK(found.deviations.at<double>(i) == Approx(expected.deviations.at<double>(i)).epsilon(1e-2));
+            CHECK(found.stdDeviations.at<double>(i) == Approx(expected.stdDeviations.at<double>(i)).epsilon(1e-2));
     }
 }

@@ -81,7 +81,7 @@ struct TankCall : RigCall
         return row;
     }
 
-    double distanceSigma() const { return deviations.at<double>(rowOfWindow(0) + 3); }
+    double distanceSigma() const { return stdDeviations.at<double>(rowOfWindow(0) + 3); }
 
     //! Errors over what is stated, as camera c sees the wall: of the normal (two of a kind, root of the sum) and the distance.
     Vec2d overStated(const RigTruth& rig, int c) const
@@ -90,7 +90,7 @@ struct TankCall : RigCall
         const int row = rowOfWindow(c);
         const Vec3d error = found.normal - truth.normal;
         return Vec2d(std::sqrt(squaredMahalanobis({ error[0], error[1] }, covariance, { row, row + 1 })),
-                     std::abs(found.distance - truth.distance)/deviations.at<double>(row + 3));
+                     std::abs(found.distance - truth.distance)/stdDeviations.at<double>(row + 3));
     }
 
     double wrongBy(const RigTruth& rig, int c = 0) const

@@ -28,10 +28,11 @@ struct HalfCall : RigCall
     HalfCall(const RigTruth& rig, const RigScene& scene) : RigCall(rig, scene, false) {}
     double run(int flags)
     {
-        return calibrateGlassRig(object, direct, refracted, cameras, windows, Rs, Ts, rvecs, tvecs, deviations, covariance,
-                                 perViewErrors, imageStatus, inliers, otherMinima, flags, poseCovariances,
-                                 TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 1000, 1e-12), cameraCovariances,
-                                 std::vector<std::vector<Mat> >(), pixelCovariances);
+        GlassRigOptions options(flags);
+        options.poseCovariances = poseCovariances;
+        options.cameraCovariances = cameraCovariances;
+        options.pixelCovariancesRefracted = pixelCovariances;
+        return RigCall::run(options);
     }
     std::vector<Mat> cameraCovariances;
     std::vector<std::vector<Mat> > pixelCovariances;
@@ -190,7 +191,7 @@ TEST_CASE("A straight sheet of light: three of its six are told, the others are 
     call.cameraCovariances = { Mat(), extrinsicPrior(call.cameras[1], { NaN, NaN, NaN, NaN, 0, 0 }) };
     const std::string whyTurn = whyNot([&] { call.run(flags); });
     if (whyTurn == "no exception")          // where noise seems to tell a little of what the sheet does not
-        CHECK(norm(call.deviations.rowRange(call.deviations.rows - 6, call.deviations.rows - 3), NORM_INF) > 0.01);
+        CHECK(norm(call.stdDeviations.rowRange(call.stdDeviations.rows - 6, call.stdDeviations.rows - 3), NORM_INF) > 0.01);
     else
         CHECK_THAT(whyTurn, Contains("do not determine R"));
     call.Rs[1] = Mat(R, true);
@@ -215,7 +216,7 @@ TEST_CASE("A straight sheet of light: three of its six are told, the others are 
     CHECK(Vec3d(call.Ts[1])[1] == T[1]);
     CHECK(Vec3d(call.Ts[1])[2] == T[2]);
     // x of T, which the sheet tells, and how well.
-    const double sigma = call.deviations.at<double>(call.deviations.rows - 3);
+    const double sigma = call.stdDeviations.at<double>(call.stdDeviations.rows - 3);
     CHECK(sigma < 0.1);
     CHECK(std::abs(Vec3d(call.Ts[1])[0] - T[0]) < 5*sigma);
 }
@@ -322,9 +323,9 @@ TEST_CASE("A moved scene with a line camera beside cameras: bundle adjustment ta
         // Distortion and window hardly tell where it is along v.
         call.Ts[2].at<double>(1) = rig.Ts[2][1];
         const std::vector<Mat> known = { Mat(), Mat(), extrinsicPrior(call.cameras[2], { NaN, NaN, NaN, NaN, 0, NaN }) };
-        const double rms = refractiveBundleAdjust(call.images, call.cameras, call.windows, call.Rs, call.Ts, call.rvecs, call.tvecs,
-            call.points, call.lengths, call.deviations, call.covariance, call.pointDeviations, call.perViewErrors, call.inliers,
-            GLASS_FREE_EXTRINSICS, noArray(), TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 1000, 1e-12), known);
+        BundleAdjustOptions options(GLASS_FREE_EXTRINSICS);
+        options.cameraCovariances = known;
+        const double rms = call.run(options);
         CAPTURE(seed(), trial);
         CHECK(rms < 0.2);
         for (size_t i = 0; i < scene.points.size(); i++)
@@ -336,7 +337,7 @@ TEST_CASE("A moved scene with a line camera beside cameras: bundle adjustment ta
         }
         const Vec3d T(call.Ts[2]);
         for (int k = 0; k < 3; k++)
-            CHECK(std::abs(T[k] - rig.Ts[2][k]) <= 5*call.deviations.at<double>(call.deviations.rows - 3 + k));
+            CHECK(std::abs(T[k] - rig.Ts[2][k]) <= 5*call.stdDeviations.at<double>(call.stdDeviations.rows - 3 + k));
     }
     const double ratio = sum/number;
     CHECK(ratio > 0.6);

@@ -26,10 +26,7 @@ struct KnownLens
         lens.at<double>(0) += offset;
         lens.at<double>(1) += offset;
         call.cameras[0]->setLensParameters(lens);
-        calibrateGlassRig(call.object, call.direct, call.refracted, call.cameras, call.windows, call.Rs, call.Ts, call.rvecs,
-                          call.tvecs, call.deviations, call.covariance, call.perViewErrors, call.imageStatus, call.inliers,
-                          call.otherMinima, flags, noArray(), TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 200, 1e-12),
-                          std::vector<Mat>{ covariance });
+        call.run(flags, { covariance });
         return call;
     }
 };
@@ -49,18 +46,18 @@ TEST_CASE("A lens known with a covariance lies between an exact one and a free o
     CAPTURE(seed());
     KnownLens k(random);
     const RigCall exact = k.call(0, ofFocalLengths(0), GLASS_FREE_INTRINSICS), sure = k.call(0, ofFocalLengths(1e-4), 0);
-    CHECK(exact.deviations.at<double>(0) == 0);
+    CHECK(exact.stdDeviations.at<double>(0) == 0);
     CHECK(exact.cameras[0]->lensParameters().at<double>(0) == k.truth.cameras[0]->lensParameters().at<double>(0));
     CHECK(norm(exact.cameras[0]->window().normal - sure.cameras[0]->window().normal) < 1e-6);
 
     const RigCall within = k.call(0, ofFocalLengths(3), 0), free = k.call(0, ofFocalLengths(1e5), 0);
-    CHECK(within.deviations.at<double>(0) > 0.1);
-    CHECK(within.deviations.at<double>(0) < 3);
-    CHECK(within.deviations.at<double>(0) < free.deviations.at<double>(0));
+    CHECK(within.stdDeviations.at<double>(0) > 0.1);
+    CHECK(within.stdDeviations.at<double>(0) < 3);
+    CHECK(within.stdDeviations.at<double>(0) < free.stdDeviations.at<double>(0));
     // The normal's +- grows with what is not known of the lens.
-    CHECK(within.deviations.at<double>(8) >= exact.deviations.at<double>(8));
-    CHECK(free.deviations.at<double>(8) > exact.deviations.at<double>(8));
-    CHECK(within.deviations.at<double>(2) == 0);        // no variance: exact
+    CHECK(within.stdDeviations.at<double>(8) >= exact.stdDeviations.at<double>(8));
+    CHECK(free.stdDeviations.at<double>(8) > exact.stdDeviations.at<double>(8));
+    CHECK(within.stdDeviations.at<double>(2) == 0);        // no variance: exact
 }
 
 TEST_CASE("Errors of a lens that is known so far are what is stated", "[known][slow]")
@@ -79,8 +76,8 @@ TEST_CASE("Errors of a lens that is known so far are what is stated", "[known][s
         const RigCall call = k.call(offset, covariance, 0);
         lens.push_back(call.cameras[0]->lensParameters().at<double>(0) - k.truth.cameras[0]->lensParameters().at<double>(0));
         normal.push_back(call.cameras[0]->window().normal[0] - k.truth.cameras[0]->window().normal[0]);
-        statedLens += std::pow(call.deviations.at<double>(0), 2);
-        statedNormal += std::pow(call.deviations.at<double>(8), 2);
+        statedLens += std::pow(call.stdDeviations.at<double>(0), 2);
+        statedNormal += std::pow(call.stdDeviations.at<double>(8), 2);
     }
     const double ofLens = cv::norm(lens)/std::sqrt(statedLens), ofNormal = cv::norm(normal)/std::sqrt(statedNormal);
     std::cout << "[numbers] lens known with a covariance, error over stated: focal length " << ofLens << ", normal " << ofNormal
@@ -107,9 +104,9 @@ TEST_CASE("The noise that a fit tells is that of the pixels, however much priors
             covariance.at<double>(i, i) = DEVIATION*DEVIATION;
         }
         call.cameras[0]->setLensParameters(lens);
-        const FitStatistics fit = refit(call, 0, { covariance });
-        squares += std::pow(fit.sigma/SIGMA, 2)/TRIALS;
-        withoutPriors += std::pow(fit.rms/SIGMA, 2)*(2*call.object.size()*call.object[0].size())/fit.freedom/TRIALS;
+        refit(call, 0, { covariance });
+        squares += std::pow(call.pixelStd/SIGMA, 2)/TRIALS;
+        withoutPriors += std::pow(call.rms/SIGMA, 2)*(2*call.object.size()*call.object[0].size())/call.degreesOfFreedom/TRIALS;
     }
     std::cout << "[numbers] squared noise over the true one where priors are contradicted: " << squares
               << "; as if they were met: " << withoutPriors << std::endl;
@@ -140,11 +137,9 @@ TEST_CASE("A thickness known with a tolerance is estimated within it", "[known]"
     call.cameras[0]->setWindow(window);
     Mat known = Mat::zeros(16, 16, CV_64F);             // lens 8, normal 3, distance, thickness, index, inner, outer
     known.at<double>(12, 12) = 0.3*0.3;
-    calibrateGlassRig(call.object, call.direct, call.refracted, call.cameras, std::vector<int>(), call.Rs, call.Ts, call.rvecs,
-                      call.tvecs, call.deviations, call.covariance, call.perViewErrors, call.imageStatus, call.inliers,
-                      call.otherMinima, 0, noArray(), TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 200, 1e-12),
-                      std::vector<Mat>{ known });
-    const double deviation = call.deviations.at<double>(12);
+    call.windows.clear();
+    call.run(0, { known });
+    const double deviation = call.stdDeviations.at<double>(12);
     CHECK(deviation > 0);
     CHECK(deviation < 0.3);
     CHECK(std::abs(call.cameras[0]->window().thickness[0] - 20) < 4*deviation);
@@ -181,7 +176,7 @@ TEST_CASE("Cameras behind one wall, the second nearer to it than the first was t
             {
                 const int at = c*16;
                 CHECK(std::abs(call.cameras[c]->window().distance - rig.cameras[c]->window().distance) <
-                      5*call.deviations.at<double>(at + 11));
+                      5*call.stdDeviations.at<double>(at + 11));
                 CHECK(angleBetween(call.cameras[c]->window().normal, rig.cameras[c]->window().normal) < 3);
             }
         }
@@ -245,8 +240,8 @@ TEST_CASE("A normal known with a covariance is estimated within it", "[known][pr
         const double DEGREE = CV_PI/180;
         const RigCall unknown = k.call(Vec2d(), 0), roughly = k.call(Vec2d(), 100*DEGREE), known = k.call(Vec2d(), 0.01*DEGREE);
         const int n = KnownNormal::NORMAL;
-        CHECK(roughly.deviations.at<double>(n) == Approx(unknown.deviations.at<double>(n)).epsilon(0.02));
-        CHECK(known.deviations.at<double>(n) < 0.2*unknown.deviations.at<double>(n));
+        CHECK(roughly.stdDeviations.at<double>(n) == Approx(unknown.stdDeviations.at<double>(n)).epsilon(0.02));
+        CHECK(known.stdDeviations.at<double>(n) < 0.2*unknown.stdDeviations.at<double>(n));
         // Given with that certainty, it is as given, right or wrong.
         const RigCall wrong = k.call(Vec2d(0.2*DEGREE, 0), 1e-4*DEGREE);
         const double angle = std::acos(wrong.cameras[0]->window().normal.dot(k.truth.cameras[0]->window().normal))/DEGREE;
@@ -268,9 +263,9 @@ TEST_CASE("Errors of a normal that is known so far are what is stated", "[known]
         for (int i = 0; i < 2; i++)
         {
             errors[i] += std::pow(call.cameras[0]->window().normal[i] - k.truth.cameras[0]->window().normal[i], 2);
-            stated[i] += std::pow(call.deviations.at<double>(KnownNormal::NORMAL + i), 2);
+            stated[i] += std::pow(call.stdDeviations.at<double>(KnownNormal::NORMAL + i), 2);
         }
-        alone += trial ? 0 : std::pow(k.call(Vec2d(), 0).deviations.at<double>(KnownNormal::NORMAL), 2);
+        alone += trial ? 0 : std::pow(k.call(Vec2d(), 0).stdDeviations.at<double>(KnownNormal::NORMAL), 2);
     }
     const double x = std::sqrt(errors[0]/stated[0]), y = std::sqrt(errors[1]/stated[1]);
     std::cout << "[numbers] normal known to 0.3 degrees, error over stated: x " << x << ", y " << y << "; stated "

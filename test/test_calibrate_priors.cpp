@@ -133,7 +133,7 @@ TEST_CASE("Where a covariance is singular, a combination is known", "[known][pri
     const RigCall tied = lens(1), nearly = lens(1 - 1e-8);
     const Mat K = tied.cameras[0]->cameraMatrix(), start = scenes.truth.cameras[0]->cameraMatrix();
     CHECK(K.at<double>(0, 0) - start.at<double>(0, 0) == Approx(K.at<double>(1, 1) - start.at<double>(1, 1)).margin(1e-3));
-    CHECK(std::abs(K.at<double>(0, 0) - start.at<double>(0, 0)) < 5*tied.deviations.at<double>(0));
+    CHECK(std::abs(K.at<double>(0, 0) - start.at<double>(0, 0)) < 5*tied.stdDeviations.at<double>(0));
     CHECK(norm(tied.cameras[0]->window().normal - nearly.cameras[0]->window().normal) < 1e-6);
     // The same of a rig.
     Mat C = Mat::zeros(2*CAMERA + 6, 2*CAMERA + 6, CV_64F);
@@ -158,9 +158,9 @@ TEST_CASE("A pose may be exact in a part, and not known in another", "[known][pr
     };
     const auto compare = [](const RigCall& one, const RigCall& other, double relative)
     {
-        CHECK(norm(one.cameras[0]->window().normal - other.cameras[0]->window().normal) < relative*one.deviations.at<double>(8));
+        CHECK(norm(one.cameras[0]->window().normal - other.cameras[0]->window().normal) < relative*one.stdDeviations.at<double>(8));
         for (int i = 8; i < 11; i++)
-            CHECK(one.deviations.at<double>(i) == Approx(other.deviations.at<double>(i)).epsilon(relative).margin(1e-12));
+            CHECK(one.stdDeviations.at<double>(i) == Approx(other.stdDeviations.at<double>(i)).epsilon(relative).margin(1e-12));
     };
     compare(scenes.posed(covariance(0, 0.01)), scenes.posed(covariance(1e-15, 0.01)), 1e-4);
     compare(scenes.posed(covariance(1e-6, 0)), scenes.posed(covariance(1e-6, 1e-12)), 1e-4);
@@ -171,7 +171,7 @@ TEST_CASE("A pose may be exact in a part, and not known in another", "[known][pr
     compare(scenes.posed(covariance(NaN, NaN)), free, 1e-6);
     const RigCall part = scenes.posed(covariance(NaN, 0.01)), vague = scenes.posed(covariance(1e2, 0.01));
     for (int i = 8; i < 11; i++)
-        CHECK(part.deviations.at<double>(i) == Approx(vague.deviations.at<double>(i)).epsilon(0.05).margin(1e-12));
+        CHECK(part.stdDeviations.at<double>(i) == Approx(vague.stdDeviations.at<double>(i)).epsilon(0.05).margin(1e-12));
     // What is given where nothing is known has no effect, be it no number. As of an IMU, which tells rotations alone.
     for (bool isPaired : { false, true })
         for (int unknown : { 0, 3 })
@@ -229,7 +229,7 @@ TEST_CASE("NaN says that nothing is known, of cameras, targets, the rig and leng
     RigCall none = scenes.targets(), nan = scenes.targets();
     none.run(GLASS_FREE_THICKNESS, { Mat() });
     nan.run(GLASS_FREE_THICKNESS, { Mat(CAMERA, CAMERA, CV_64F, Scalar(NaN)) });
-    CHECK(largestDifference(none.deviations, nan.deviations) == 0);
+    CHECK(largestDifference(none.stdDeviations, nan.stdDeviations) == 0);
     // A motion of the targets of which nothing is known: as a prior that is far too wide.
     Mat unknown = Mat::zeros(7, 7, CV_64F), wide = unknown.clone();
     for (int i = 1; i < 7; i++)
@@ -240,9 +240,9 @@ TEST_CASE("NaN says that nothing is known, of cameras, targets, the rig and leng
     RigCall free = scenes.targets(), within = scenes.targets();
     free.run(0, { Mat() }, unknown);
     within.run(0, { Mat() }, wide);
-    REQUIRE(free.deviations.rows == within.deviations.rows);
+    REQUIRE(free.stdDeviations.rows == within.stdDeviations.rows);
     for (int i = 8; i < 11; i++)
-        CHECK(free.deviations.at<double>(i) == Approx(within.deviations.at<double>(i)).epsilon(0.05).margin(1e-12));
+        CHECK(free.stdDeviations.at<double>(i) == Approx(within.stdDeviations.at<double>(i)).epsilon(0.05).margin(1e-12));
     // Of a rig the flags decide.
     Mat C = Mat::zeros(2*CAMERA + 6, 2*CAMERA + 6, CV_64F), some = C.clone();
     C.at<double>(0, 0) = some.at<double>(0, 0) = 1;
@@ -251,14 +251,14 @@ TEST_CASE("NaN says that nothing is known, of cameras, targets, the rig and leng
     BundleCall zero = scenes.bundle(), other = scenes.bundle();
     zero.run(C, 0, GLASS_FREE_EXTRINSICS);
     other.run(some, 0, GLASS_FREE_EXTRINSICS);
-    CHECK(largestDifference(zero.deviations, other.deviations) == 0);
+    CHECK(largestDifference(zero.stdDeviations, other.stdDeviations) == 0);
     // Of a length: as if it were not there.
     BundleCall fewer = scenes.bundle(), marked = scenes.bundle();
     fewer.lengths.erase(fewer.lengths.begin() + 3);
     marked.lengths[3][3] = NaN;
     fewer.run(GLASS_FREE_EXTRINSICS);
     marked.run(GLASS_FREE_EXTRINSICS);
-    CHECK(largestDifference(fewer.deviations, marked.deviations) == 0);
+    CHECK(largestDifference(fewer.stdDeviations, marked.stdDeviations) == 0);
 }
 
 TEST_CASE("A covariance of R and T tells the scale, with any flags; without it there is a CalibrationError", "[known][prior][bundle]")
@@ -274,10 +274,11 @@ TEST_CASE("A covariance of R and T tells the scale, with any flags; without it t
         BundleCall call = scenes.bundle();
         if (!hasLengths)
             call.lengths.clear();
-        refractiveBundleAdjust(call.images, call.cameras, call.windows, call.Rs, call.Ts, call.rvecs, call.tvecs, call.points, call.lengths,
-                               call.deviations, call.covariance, call.pointDeviations, call.perViewErrors, call.inliers, flags, noArray(),
-                               TermCriteria(3, 1000, 1e-12), cameras.empty() ? InputArrayOfArrays(noArray()) : InputArrayOfArrays(cameras),
-                               {}, rig, lengthScaleStd);
+        BundleAdjustOptions options(flags);
+        options.cameraCovariances = cameras;
+        options.rigCovariance = rig;
+        options.lengthScaleStd = lengthScaleStd;
+        call.run(options);
         return call;
     };
     const int FREE = GLASS_FIX_NORMAL | GLASS_FREE_EXTRINSICS;
@@ -285,11 +286,11 @@ TEST_CASE("A covariance of R and T tells the scale, with any flags; without it t
     {
         const BundleCall same = run(GLASS_FIX_NORMAL, ofRig, {});
         CHECK(largestDifference(call.Ts[1], same.Ts[1]) < 1e-6);
-        CHECK(call.deviations.at<double>(P - 3) == Approx(same.deviations.at<double>(P - 3)).epsilon(1e-6));
+        CHECK(call.stdDeviations.at<double>(P - 3) == Approx(same.stdDeviations.at<double>(P - 3)).epsilon(1e-6));
     }
     // T exact, in a covariance; lengths whose common error is not known, beside it.
     const Mat exact = Mat::zeros(CAMERA + 6, CAMERA + 6, CV_64F);
-    CHECK(run(FREE, Mat(), { Mat(), exact }).deviations.at<double>(P - 3) == 0);
+    CHECK(run(FREE, Mat(), { Mat(), exact }).stdDeviations.at<double>(P - 3) == 0);
     CHECK_NOTHROW(run(FREE, ofRig, {}, NaN, true));
     const auto cause = [&](const std::function<void()>& call)
     {
@@ -347,12 +348,12 @@ TEST_CASE("A prior is about the value that was given, wherever the search begins
             RigCall call = with;
             call.cameras[0] = with.cameras[0]->clone();
             call.run(flags, { prior });
-            const double sigma = call.deviations.at<double>(11);
+            const double sigma = call.stdDeviations.at<double>(11);
             CAPTURE(call.cameras[0]->window().distance, sigma);
             CHECK(std::abs(call.cameras[0]->window().distance - distance) < 4*sigma);
             CHECK((sigma > 0 && sigma < 0.55));
         }
         without.run(GLASS_FREE_DISTANCE);
-        CHECK(without.deviations.at<double>(11) > 2);           // what the images alone tell
+        CHECK(without.stdDeviations.at<double>(11) > 2);           // what the images alone tell
     }
 }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // calibrateGlassRig: any number of cameras, shared windows, known poses.
+#include "bundle_scenes.hpp"
 #include "rig_scenes.hpp"
 
 using namespace cv;
@@ -84,12 +85,14 @@ TEST_CASE("One camera: the rig is calibrateGlass; the stereo pair is stereoCalib
     const double rms = rig.run(GLASS_FREE_THICKNESS | GLASS_FREE_EXTRINSICS);
     RigCall start(truth, scene, true);
     Mat R = start.Rs[1], T = start.Ts[1];
-    Mat covariance;
-    CHECK(stereoCalibrateGlass(scene.object, scene.direct[0], scene.refracted[0], scene.direct[1], scene.refracted[1],
-                               start.cameras[0], start.cameras[1], R, T, noArray(), noArray(), noArray(), covariance,
-                               noArray(), GLASS_FREE_THICKNESS | GLASS_FREE_EXTRINSICS) == rms);
+    const GlassRigResult pair = stereoCalibrateGlass(scene.object, scene.direct[0], scene.refracted[0], scene.direct[1],
+                                                     scene.refracted[1], start.cameras[0], start.cameras[1], R, T, noArray(),
+                                                     noArray(), GlassRigOptions(GLASS_FREE_THICKNESS | GLASS_FREE_EXTRINSICS));
+    CHECK(pair.rms == rms);
     CHECK(norm(T, rig.Ts[1]) == 0);
-    CHECK(norm(covariance, rig.covariance) == 0);
+    CHECK(norm(pair.covariance, rig.covariance) == 0);
+    CHECK(norm(pair.perViewErrors, rig.perViewErrors) == 0);
+    CHECK(pair.pixelStd == rig.pixelStd);
 
     RigTruth one = truth;
     RigScene seenByOne = scene;
@@ -99,6 +102,73 @@ TEST_CASE("One camera: the rig is calibrateGlass; the stereo pair is stereoCalib
     CHECK(calibrateGlass(scene.object, scene.direct[0], scene.refracted[0], again.cameras[0], noArray(), noArray(),
                          GLASS_FREE_THICKNESS) == alone);
     CHECK(again.cameras[0]->window().normal == single.cameras[0]->window().normal);
+}
+
+TEST_CASE("stereoCalibrateGlass takes what is known of cameras, targets and pixels, as the rig does", "[rig_glass]")
+{
+    Random random(631);
+    CAPTURE(seed());
+    const RigTruth truth = makeRig(2, { 0, 1 }, 1);
+    const RigScene scene = makeRigScene(truth, 4, random, 0.1);
+    GlassRigOptions options;
+    options.criteria.maxCount = 300;
+    for (int c = 0; c < 2; c++)
+    {
+        const int count = (int)truth.cameras[c]->parameterNames().size(), lens = (int)truth.cameras[c]->lensParameters().total();
+        const int own = c == 0 ? count : count + 6;         // R and T of the second, too
+        options.cameraCovariances.push_back(Mat::zeros(own, own, CV_64F));
+        for (int i : { 0, 1, lens + 4 })                    // focal lengths, thickness
+            options.cameraCovariances[c].at<double>(i, i) = i < 2 ? 1 : 0.01;
+        for (int i = count; i < own; i++)
+            options.cameraCovariances[c].at<double>(i, i) = i < count + 3 ? 1e-6 : 0.01;
+        options.pixelCovariancesRefracted.push_back(std::vector<Mat>(4, Mat(30, 1, CV_64FC3, Scalar(1, 0.2, 2))));
+    }
+    options.targetCovariance = Mat::diag(Mat(std::vector<double>{ 1e-6, 1e-6, 1e-6, 1e-6, 0.01, 0.01, 0.01 }));
+    RigCall rig(truth, scene, true), start(truth, scene, true);
+    rig.run(options);
+    Mat R = start.Rs[1], T = start.Ts[1];
+    const GlassRigResult pair = stereoCalibrateGlass(scene.object, scene.direct[0], scene.refracted[0], scene.direct[1],
+                                                     scene.refracted[1], start.cameras[0], start.cameras[1], R, T, noArray(),
+                                                     noArray(), options);
+    CHECK(pair.rms == rig.rms);
+    CHECK(norm(T, rig.Ts[1]) == 0);
+    CHECK(norm(T, truth.Ts[1]) > 0);
+    CHECK(norm(pair.covariance, rig.covariance) == 0);
+    CHECK(norm(pair.targetErrors, rig.targetErrors) == 0);
+    CHECK(pair.degreesOfFreedom == rig.degreesOfFreedom);
+    options.computeCovariance = false;
+    RigCall quick(truth, scene, true);
+    CHECK(quick.run(options) == Approx(rig.rms).epsilon(1e-6));
+    CHECK(quick.covariance.empty());
+    CHECK(quick.stdDeviations.empty());
+}
+
+TEST_CASE("The noise that a result tells is that of a usual pixel, whatever all pixels are", "[rig_glass][bundle]")
+{
+    Random random(632);
+    CAPTURE(seed());
+    const RigTruth truth = makeRig(2, { 0, 1 }, 1.333);
+    const RigScene scene = makeRigScene(truth, 4, random, 0.1);
+    const BundleScene points = makeMovingScene(truth, 4, 40, random, 0.1);
+    GlassRigOptions options(GLASS_FREE_EXTRINSICS | GLASS_FREE_DISTANCE);
+    BundleAdjustOptions ofBundle(GLASS_FREE_EXTRINSICS | GLASS_FREE_DISTANCE);
+    RigCall usual(truth, scene, true), noisy(truth, scene, true);
+    Random start(633), again(633);
+    BundleCall usualBundle(truth, points, start), noisyBundle(truth, points, again);
+    usual.run(options);
+    usualBundle.run(ofBundle);
+    const Mat four(30, 1, CV_64FC3, Scalar(4, 0, 4)), ofPoints(40, 1, CV_64FC3, Scalar(4, 0, 4));
+    options.pixelCovariancesDirect.assign(2, std::vector<Mat>(4, four));
+    options.pixelCovariancesRefracted = options.pixelCovariancesDirect;
+    ofBundle.pixelCovariances.assign(2, std::vector<Mat>(4, ofPoints));
+    noisy.run(options);
+    noisyBundle.run(ofBundle);
+    CHECK(usual.pixelStd == Approx(0.1).epsilon(0.1));
+    CHECK(usualBundle.pixelStd == Approx(0.1).epsilon(0.1));
+    CHECK(noisy.pixelStd == Approx(usual.pixelStd/2).epsilon(1e-9));
+    CHECK(noisyBundle.pixelStd == Approx(usualBundle.pixelStd/2).epsilon(1e-9));
+    CHECK(norm(noisy.covariance, usual.covariance) < 1e-9*norm(usual.covariance));
+    CHECK(norm(noisyBundle.covariance, usualBundle.covariance) < 1e-9*norm(usualBundle.covariance));
 }
 
 TEST_CASE("Known poses: one view through the window determines its normal", "[rig_glass]")
@@ -157,27 +227,6 @@ TEST_CASE("Poses known with a covariance: between none and exact, and as good as
     CHECK(mahalanobis == Approx(2).epsilon(0.35));
     CHECK(exact < uncertain);
     CHECK(uncertain < 0.2*unknown);
-}
-
-TEST_CASE("Covariances of poses in a vector of fixed matrices are those in a vector of Mat", "[rig_glass]")
-{
-    Random random(6490);
-    const RigTruth truth = makeRig(1, { 0 }, 1);
-    const RigScene scene = makeRigScene(truth, 4, random, 0.1);
-    const std::vector<Matx66d> fixed(4, 1e-6*Matx66d::eye());
-    RigCall call(truth, scene, false), same(truth, scene, false);
-    for (RigCall* c : { &call, &same })
-    {
-        c->rvecs = vectorsOf(scene.rvecs);
-        c->tvecs = vectorsOf(scene.tvecs);
-    }
-    call.poseCovariances.assign(4, Mat(1e-6*Matx66d::eye()));
-    call.run(GLASS_USE_POSES);
-    calibrateGlassRig(same.object, same.direct, same.refracted, same.cameras, same.windows, same.Rs, same.Ts, same.rvecs, same.tvecs,
-                      same.deviations, same.covariance, same.perViewErrors, same.imageStatus, same.inliers, same.otherMinima,
-                      GLASS_USE_POSES, fixed);
-    CHECK(call.cameras[0]->window().normal == same.cameras[0]->window().normal);
-    CHECK(largestDifference(call.covariance, same.covariance) == 0);
 }
 
 TEST_CASE("A second minimum of a window seen through only is told, with how much worse it is", "[rig_glass]")
@@ -325,8 +374,9 @@ TEST_CASE("calibrateGlassRig refuses", "[rig_glass]")
     using Catch::Contains;
     CHECK_THAT(why(GLASS_SHARED_WINDOW, [](RigCall&) {}), Contains("flags is 64"));
     CHECK_THAT(why(GLASS_FREE_DISTANCE, [](RigCall&) {}), Contains("GLASS_FREE_DISTANCE"));
+    CHECK_THAT(why(0, [](RigCall& c) { c.poseCovariances.resize(3); }), Contains("poseCovariances is given, but flags has no"));
     CHECK_THAT(why(0, [](RigCall& c) { c.cameras.clear(); }), Contains("cameras is empty"));
-    CHECK_THAT(why(0, [](RigCall& c) { c.windows.pop_back(); }), Contains("windowOfCamera has 1 elements; cameras has 2"));
+    CHECK_THAT(why(0, [](RigCall& c) { c.windows.pop_back(); }), Contains("windowOfCamera has 1 elements; there are 2 cameras"));
     CHECK_THAT(why(0, [](RigCall& c) { c.refracted.pop_back(); }), Contains("imagePointsRefracted has 1"));
     CHECK_THAT(why(0, [](RigCall& c) { c.refracted[1].clear(); }), Contains("imagePointsRefracted[1] has no point"));
     CHECK_THAT(why(0, [](RigCall& c) { c.direct[1].pop_back(); }), Contains("imagePointsDirect[1] has 2 views"));

@@ -83,7 +83,7 @@ TEST_CASE("Clean data lose next to nothing, with pairs and without", "[robust][s
         CHECK(lost <= 2);
         const double sigma = std::sqrt(trace(all.covariance(Rect(8, 8, 3, 3)))[0])*180/CV_PI;
         CHECK(angleBetween(robust.cameras[0]->window().normal, all.cameras[0]->window().normal) < sigma);
-        CHECK(largestDifference(robust.deviations, all.deviations) < 0.02*norm(all.deviations, NORM_INF));
+        CHECK(largestDifference(robust.stdDeviations, all.stdDeviations) < 0.02*norm(all.stdDeviations, NORM_INF));
     }
     Rig perfect(4, 715, 0);
     RigCall call(perfect.truth, perfect.scene, true);

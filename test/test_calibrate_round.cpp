@@ -55,7 +55,7 @@ TEST_CASE("The radius of a dome or tube and the index outside are estimated wher
             CHECK(placeErrors(call, truth)[0] < 1e-4);
             CHECK(std::abs(call.cameras[0]->window().radius - 70) < 1e-4);
             CHECK(std::abs(call.cameras[0]->window().outerIndex - 1.333) < 1e-7);
-            CHECK(call.deviations.at<double>(LENS_PARAMETERS + c.row) > 0);
+            CHECK(call.stdDeviations.at<double>(LENS_PARAMETERS + c.row) > 0);
         }
     }
 }

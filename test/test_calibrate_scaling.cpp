@@ -14,9 +14,9 @@ using namespace scenes;
 static double secondsOf(RigCall call, const TermCriteria& criteria)
 {
     const std::clock_t start = std::clock();
-    calibrateGlassRig(call.object, call.direct, call.refracted, call.cameras, call.windows, call.Rs, call.Ts, call.rvecs,
-                      call.tvecs, call.deviations, call.covariance, call.perViewErrors, call.imageStatus, call.inliers,
-                      call.otherMinima, GLASS_FREE_EXTRINSICS | GLASS_FREE_INTRINSICS, noArray(), criteria);
+    GlassRigOptions options(GLASS_FREE_EXTRINSICS | GLASS_FREE_INTRINSICS);
+    options.criteria = criteria;
+    call.run(options);
     return (double)(std::clock() - start)/CLOCKS_PER_SEC;
 }
 

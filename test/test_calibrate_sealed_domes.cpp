@@ -56,10 +56,10 @@ std::vector<double> overStated(unsigned seed)
     {
         const Mat found = call.cameras[c]->lensParameters(), right = truth.cameras[c]->lensParameters();
         for (int i = 0; i < found.rows; i++)
-            ratios.push_back((found.at<double>(i) - right.at<double>(i))/call.deviations.at<double>(row + i));
+            ratios.push_back((found.at<double>(i) - right.at<double>(i))/call.stdDeviations.at<double>(row + i));
         for (int i = 0; i < 3; i++)
             ratios.push_back((call.cameras[c]->window().center[i] - truth.cameras[c]->window().center[i])/
-                             call.deviations.at<double>(row + LENS_PARAMETERS + i));
+                             call.stdDeviations.at<double>(row + LENS_PARAMETERS + i));
         row += (int)call.cameras[c]->parameterNames().size();
     }
     return ratios;

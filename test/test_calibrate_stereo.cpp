@@ -72,9 +72,12 @@ StereoScene makeStereoScene(const StereoRig& rig, int views, Random& random, dou
 
 double calibrate(const StereoScene& scene, StereoRig& rig, int flags, OutputArray covariance = noArray())
 {
-    return stereoCalibrateGlass(scene.object, scene.direct1, scene.refracted1, scene.direct2, scene.refracted2,
-                                rig.camera1, rig.camera2, rig.R, rig.T, noArray(), noArray(), noArray(), covariance,
-                                noArray(), flags);
+    const GlassRigResult result = stereoCalibrateGlass(scene.object, scene.direct1, scene.refracted1, scene.direct2, scene.refracted2,
+                                                       rig.camera1, rig.camera2, rig.R, rig.T, noArray(), noArray(),
+                                                       GlassRigOptions(flags));
+    if (covariance.needed())
+        result.covariance.copyTo(covariance);
+    return result.rms;
 }
 
 GlassWindow pane(double distance = 0) { return GlassWindow({ 0, 0, 1 }, 20, 1.5437, distance); }

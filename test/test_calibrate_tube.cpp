@@ -27,7 +27,7 @@ TEST_CASE("Two cameras in one tube are calibrated together", "[tube][calibrate]"
         CHECK(placeErrors(call, truth, c)[0] < 1e-4);
         CHECK(placeErrors(call, truth, c)[1] < 1e-6);
         for (int i = 0; i < 3; i++)
-            CHECK(call.deviations.at<double>(c*COUNT + AXIS + i) > 0);
+            CHECK(call.stdDeviations.at<double>(c*COUNT + AXIS + i) > 0);
     }
 }
 
@@ -82,7 +82,7 @@ TEST_CASE("A tube's center is where its axis is nearest to the camera, and its c
             const std::vector<double> errors = windowErrors(found, truth.cameras[c]->window());
             for (int k = 0; k < 3; k++)
             {
-                const double sigma = call.deviations.at<double>(before + CENTER + k);
+                const double sigma = call.stdDeviations.at<double>(before + CENTER + k);
                 CHECK(sigma == Approx(std::sqrt(ofCenter(k, k))));
                 ofCenters += errors[k]*errors[k]/(sigma*sigma)/(6*TRIALS);
             }
@@ -120,7 +120,7 @@ TEST_CASE("What is known of a tube's place is a prior", "[tube][calibrate]")
         const std::vector<double> errors = windowErrors(call.cameras[0]->window(), truth.cameras[0]->window());
         for (int i = 0; i < 4; i++)
         {
-            const double found = call.deviations.at<double>(at[i]);
+            const double found = call.stdDeviations.at<double>(at[i]);
             CAPTURE(known, at[i], found);
             CHECK(found > last[i]);
             CHECK(found <= 1.000001*known/(i < 2 ? 1 : 50));

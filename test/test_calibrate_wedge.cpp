@@ -62,9 +62,7 @@ Mat ofWedge(double sigma)
 
 void runWithPrior(RigCall& call, const Mat& prior, int flags)
 {
-    calibrateGlassRig(call.object, call.direct, call.refracted, call.cameras, call.windows, call.Rs, call.Ts, call.rvecs, call.tvecs,
-                      call.deviations, call.covariance, call.perViewErrors, call.imageStatus, call.inliers, call.otherMinima, flags,
-                      noArray(), TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 200, 1e-12), std::vector<Mat>{ prior });
+    call.run(flags, { prior });
 }
 
 } // namespace
@@ -84,8 +82,8 @@ TEST_CASE("Pairs at several ranges give normal and wedge back", "[wedge]")
             REQUIRE(call.cameras[0]->window().wedge.size() == 1);
             CHECK(normalError(call, truth) < 1e-6);
             CHECK(norm(call.cameras[0]->window().wedge[0] - ARC_MINUTE*wedge) < 1e-2*ARC_MINUTE);
-            CHECK(call.deviations.rows == WEDGE + 2);
-            CHECK(call.deviations.at<double>(WEDGE) > 0);
+            CHECK(call.stdDeviations.rows == WEDGE + 2);
+            CHECK(call.stdDeviations.at<double>(WEDGE) > 0);
         }
 }
 
@@ -107,7 +105,7 @@ TEST_CASE("A wedge that is ignored looks like a tilt; estimated, errors are what
         stated += std::pow(normalSigma(with), 2)/TRIALS;
         for (int i = 0; i < 2; i++)
             ofWedge += std::pow((with.cameras[0]->window().wedge[0][i] - truth.cameras[0]->window().wedge[0][i])/
-                                with.deviations.at<double>(WEDGE + i), 2)/(2*TRIALS);
+                                with.stdDeviations.at<double>(WEDGE + i), 2)/(2*TRIALS);
         const Vec3d error = with.cameras[0]->window().normal - truth.cameras[0]->window().normal;
         const Mat inverse = with.covariance(Rect(NORMAL, NORMAL, 3, 3)).inv(DECOMP_SVD);
         ofNormal += Mat(Mat(error).t()*inverse*Mat(error)).at<double>(0)/(2*TRIALS);
@@ -136,7 +134,7 @@ TEST_CASE("What a data sheet says of a wedge is a prior", "[wedge]")
         std::cout << "[numbers] wedge known to " << sigma << " arc minutes, 4 pairs in air: normal +- " << normalSigma(call)*180/CV_PI
                   << " degrees, off by " << normalError(call, truth)*180/CV_PI << "; wedge "
                   << call.cameras[0]->window().wedge[0]/ARC_MINUTE << " arc minutes" << std::endl;
-        CHECK(call.deviations.at<double>(WEDGE) <= sigma*ARC_MINUTE*1.000001);
+        CHECK(call.stdDeviations.at<double>(WEDGE) <= sigma*ARC_MINUTE*1.000001);
         if (sigma > 0.5)
             CHECK(normalError(call, truth) < 3.5*normalSigma(call));
         last = normalSigma(call);

@@ -101,7 +101,7 @@ Trial runTrial(const Flow& flow, const Given& given, int seedOfTrial)
     std::vector<int> rows, normalRows;
     for (int i = 0; i < at.count; i++)
     {
-        if (!(call.deviations.at<double>(lens + i) > 0))
+        if (!(call.stdDeviations.at<double>(lens + i) > 0))
             continue;
         rows.push_back(lens + i);
         ofWindow.push_back(found[lens + i] - exact[lens + i]);

@@ -159,7 +159,7 @@ TEST_CASE("Swapped points of a pair of cameras, and of a rig, are named", "[pair
     Mat R = start.Rs[1], T = start.Ts[1];
     CHECK_THAT(thrown([&] { stereoCalibrateGlass(scene.object, scene.refracted[0], scene.direct[0], scene.refracted[1],
                                                  scene.direct[1], start.cameras[0], start.cameras[1], R, T, noArray(),
-                                                 noArray(), noArray(), noArray(), noArray()); }), Contains("swapped"));
+                                                 noArray()); }), Contains("swapped"));
 }
 
 TEST_CASE("Images of different moments given as pairs are named", "[pair_check]")

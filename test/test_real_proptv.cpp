@@ -140,9 +140,10 @@ Measured calibrateAndMeasure(const Markers& train, const Markers& test, int fixe
     std::vector<Mat> Rs, Ts, rvecs, tvecs;
     try
     {
-        calibrateGlassRig(object, {}, pixels, cameras, windows, Rs, Ts, rvecs, tvecs, noArray(), noArray(), noArray(), noArray(), noArray(),
-                          noArray(), flags | fixed, noArray(), TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 1000, 1e-12),
-                          isOpen ? leftOut : std::vector<Mat>());
+        GlassRigOptions options(flags | fixed);
+        if (isOpen)
+            options.cameraCovariances = leftOut;
+        calibrateGlassRig(object, {}, pixels, cameras, windows, Rs, Ts, rvecs, tvecs, options);
     }
     catch (const CalibrationError&)
     {

@@ -458,11 +458,10 @@ void calibrateHousing(const TrueLens& lens, int count, Random& random, Stated& r
         const int chosen = selectLensCoefficients(air.object, { air.pixels }, {}, { bare }, {}, noArray(), noArray(), 0, noArray(),
                                                   leftOut);
         camera->setLensParameters(bare->lensParameters());
-        Mat covariance;
-        calibrateGlassRig(object, { direct }, { refracted }, { camera }, {}, Rs, Ts, rvecs, tvecs, noArray(), covariance, noArray(),
-                          noArray(), noArray(), noArray(), GLASS_FREE_DISTANCE | GLASS_FREE_INTRINSICS | chosen, noArray(),
-                          TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 1000, 1e-12), leftOut);
-        compareWithTruth(camera, truth, covariance, result);
+        GlassRigOptions options(GLASS_FREE_DISTANCE | GLASS_FREE_INTRINSICS | chosen);
+        options.cameraCovariances = leftOut;
+        const GlassRigResult found = calibrateGlassRig(object, { direct }, { refracted }, { camera }, {}, Rs, Ts, rvecs, tvecs, options);
+        compareWithTruth(camera, truth, found.covariance, result);
     }
     catch (const CalibrationError&)
     {
@@ -546,9 +545,9 @@ TEST_CASE("A prior on coefficients alone is no lens to start from", "[select_len
         Mat prior(9, 9, CV_64F, Scalar::all(NaN));
         prior.at<double>(8, 8) = 1e-4;          // k3
         std::vector<Mat> Rs, Ts, rvecs, tvecs;
-        calibrateGlassRig(water.object, {}, { water.pixels }, { camera }, {}, Rs, Ts, rvecs, tvecs, noArray(), noArray(), noArray(),
-                          noArray(), noArray(), noArray(), GLASS_FREE_INTRINSICS | GLASS_FIX_K3, noArray(),
-                          TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 1000, 1e-12), std::vector<Mat>{ prior });
+        GlassRigOptions options(GLASS_FREE_INTRINSICS | GLASS_FIX_K3);
+        options.cameraCovariances = { prior };
+        calibrateGlassRig(water.object, {}, { water.pixels }, { camera }, {}, Rs, Ts, rvecs, tvecs, options);
         CHECK(camera->cameraMatrix().at<double>(0, 0) == Approx(LENSES[1].f).epsilon(0.03));
     }
 }

@@ -28,6 +28,11 @@ WINDOW_MADE = """
 GlassWindow() is no window; GlassWindow(normal, thickness, index) a pane; lists of thicknesses and indices are layers, from the
 camera outwards. The normal is normalised. The fields are attributes. Their lists cannot be changed in place: set the field.
 """
+OPTIONS_MADE = """
+
+The fields are attributes, and arguments: flags is the first, the others are given by name. Lists of arrays are read as tuples: to
+change one, set the field.
+"""
 ENTRY = """
 static const Argument {name}_arguments[][{most}] = {{ {arguments} }};
 static const Form {name}_forms[] = {{ {forms} }};
@@ -83,12 +88,14 @@ def call_forms(gen2):
     return Function
 
 
-def field_texts(code):
-    """Fields have the header's text in place of their names."""
-    def text(match):
-        return f'(char*){quoted(TEXTS.get(match[1].rpartition("_")[2] + "." + match[2], [match[2]])[0])}, NULL}}'
-    return re.sub(r'(?<=\(setter\)pyopencv_)(\w+)_set_(\w+), \(char\*\)"\w+", NULL\}',
-                  lambda match: f"{match[1]}_set_{match[2]}, {text(match)}", code)
+def fields_of_ours(code):
+    """Fields have the header's text in place of their names; what a result leaves out has a shape; options own their arrays."""
+    def named(match):
+        text = TEXTS.get(match[1].rpartition("_")[2] + "." + match[2], [match[2]])[0]
+        return f"(getter)pyopencv_{match[1]}_get_{match[2]}, {match[3]}, (char*){quoted(text)}, NULL}}"
+    code = re.sub(r'\(getter\)pyopencv_(\w+)_get_(\w+), (NULL|\(setter\)\w+), \(char\*\)"\w+", NULL\}', named, code)
+    code = re.sub(r"(Result_get_\w+\([^)]*\)\s*\{\s*return )pyopencv_from\(", r"\1fromResult(", code)
+    return re.sub(r"((?:Options|Result)_set_\w+\([^{]*\{(?:(?!\n\}).)*?)pyopencv_to_safe\(", r"\1takeField(", code, flags=re.DOTALL)
 
 
 def rules_of_ours(code, function, variant):
@@ -150,16 +157,17 @@ def main(generator, output, persistence, header, *custom_headers):
     generator = load_generator(generator)
     generator.gen([persistence, header], str(output))
     types = output / "pyopencv_generated_types_content.h"
-    types.write_text(field_texts(types.read_text()))
+    types.write_text(fields_of_ours(types.read_text()))
     includes = "".join(f'#include "{path}"\n' for path in custom_headers)
     (output / "pyopencv_custom_headers.h").write_text(includes)
     (output / "_enumerations.py").write_text(stubs.enumerations(header, TEXTS))
     (output / "__init__.pyi").write_text(stubs.package(generator, header, TEXTS))
     (output / "class_texts.h").write_text("".join(
         f"static const char* const TEXT_OF_{name} = {quoted(text)};\n"
-        for name, text in [("GlassWindow", TEXTS["GlassWindow"][0] + WINDOW_MADE),
-                           ("RefractiveCamera", TEXTS["RefractiveCamera"][0]), ("FileStorage", "A file: see cv2.FileStorage."),
-                           ("FileNode", "A node of a file: see cv2.FileNode.")]))
+        for name, text in [("GlassWindow", TEXTS["GlassWindow"][0] + WINDOW_MADE), ("FileStorage", "A file: see cv2.FileStorage."),
+                           ("FileNode", "A node of a file: see cv2.FileNode."),
+                           *((name, TEXTS[name][0] + OPTIONS_MADE) for name in ("GlassRigOptions", "BundleAdjustOptions")),
+                           *((name, TEXTS[name][0]) for name in ("RefractiveCamera", "GlassRigResult", "BundleAdjustResult"))]))
 
 
 if __name__ == "__main__":

@@ -13,7 +13,7 @@ TOKENS = re.compile(r"""
     | enum\s+(?P<enum>\w+)\s*\{
     | (?P<constant>[A-Z]\w*)\s*=\s*(?P<value>\d+)
     | (?P<close>\};)
-    | (?P<statement>CV_(?:WRAP|PROP_RW|EXPORTS_(?:W|AS))\b[^;{]*;)
+    | (?P<statement>CV_(?:WRAP|PROP(?:_RW)?|EXPORTS_(?:W|AS))\b[^;{]*;)
     | (?P<unwrapped>(?:CV_|virtual|void|static|friend)[^;{]*;)
 """, re.VERBOSE | re.DOTALL)
 

@@ -17,17 +17,19 @@ FLAGS = [(r"(c|stereoC)alibrateGlass\w*|selectLensCoefficients\w*|refractiveBund
          (r"triangulateRefractive\w*", "TriangulateFlags"), (r"refractiveStereoRectify", "RectifyFlags")]
 # Outputs without an element: the shape after the first 0, and the type. Others are empty matrices of float64.
 EMPTY = {"imagePoints|dst|distorted|lines": (2, "CV_64F"), "points3D|origins|directions|_3dImage": (3, "CV_64F"),
-         "status|mask|imageStatus": (1, "CV_8U"), "inliers": (1, "CV_32S"),
+         "status|mask": (1, "CV_8U"), "inliers": (1, "CV_32S"),
          "distances|depths|rvec|tvec|T|reprojectionError": (1, "CV_64F")}
 REQUIRED_BUT_NONE = "depth"     # and arrays and windows: None is an empty array, and no window
 
 # Kinds of calls.hpp. Types that are not here have that of what OpenCV takes for them in Python.
 KINDS = {"Mat": "ARRAY", "vector_Mat": "ARRAYS", "vector_vector_Mat": "ARRAYS_OF_VIEWS", "GlassWindow": "WINDOW",
          "Ptr<RefractiveCamera>": "CAMERA", "vector_Ptr_RefractiveCamera": "CAMERAS", "int": "INTEGER", "Size": "PAIR",
-         "TermCriteria": "CRITERIA", "FileNode": "NODE", "Ptr<FileStorage>": "STORAGE"}
+         "TermCriteria": "CRITERIA", "FileNode": "NODE", "Ptr<FileStorage>": "STORAGE",
+         "GlassRigOptions": "RIG_OPTIONS", "BundleAdjustOptions": "BUNDLE_OPTIONS"}
 KINDS_OF_PYTHON = {"int": "INTEGER_64", "float": "NUMBER", "bool": "BOOLEAN", "str": "TEXT", "Sequence[int]": "INTEGERS",
                    "Sequence[float]": "VECTOR", "Sequence[str]": "TEXTS"}
-DEFAULTS = {"noArray()": "None", "GlassWindow()": "None", "String()": "''", "Size()": "(0, 0)", "true": "True", "false": "False",
+DEFAULTS = {"noArray()": "None", "GlassWindow()": "None", "GlassRigOptions()": "None", "String()": "''",
+            "Size()": "(0, 0)", "true": "True", "false": "False",
             "std::vector<int>()": "()", "std::vector<Mat>()": "()", "std::vector<std::vector<Mat> >()": "()",
             "Vec2d(0, DBL_MAX)": "(0.0, 1.7976931348623157e+308)", "Mat()": "None",
             "vector_Mat()": "None", "vector_int()": "()",

@@ -13,19 +13,26 @@ TYPES = {"ARRAY_OR_NUMBER": "Numbers | Number", "ARRAYS": "Arrays", "ARRAYS_OF_V
          "WINDOW": "GlassWindow | None", "NUMBER": "Number", "NUMBER_OR_NONE": "Number | None", "INTEGER": "int",
          "INTEGER_64": "int", "BOOLEAN": "bool", "PAIR": "Integers", "VECTOR": "Numbers", "INTEGERS": "Integers", "TEXT": "str",
          "TEXTS": "Sequence[str]",
-         "CRITERIA": "Sequence[float]", "NODE": "FileNode", "STORAGE": "FileStorage",
+         "CRITERIA": "Sequence[float]", "NODE": "FileNode", "STORAGE": "FileStorage", "RIG_OPTIONS": "GlassRigOptions",
+         "BUNDLE_OPTIONS": "BundleAdjustOptions",
          "GlassCalibrationFlags": "GlassCalibrationFlags | Literal[0]", "TriangulateFlags": "int", "RectifyFlags": "int"}
 RESULTS = {"Mat": "Array", "vector_Mat": "tuple[Array, ...]", "GlassWindow": "GlassWindow", "Ptr<RefractiveCamera>":
            "RefractiveCamera", "vector_Ptr_RefractiveCamera": "tuple[RefractiveCamera, ...]", "Vec2d": "tuple[float, float]",
            "Rect*": "tuple[int, int, int, int]", "Rect": "tuple[int, int, int, int]", "Size": "tuple[int, int]",
-           "vector_int": "tuple[int, ...] | Array", "FileNode": "FileNode"}     # others: what OpenCV takes them for
+           "vector_int": "tuple[int, ...] | Array", "FileNode": "FileNode", "GlassRigResult": "GlassRigResult",
+           "BundleAdjustResult": "BundleAdjustResult"}      # others: what OpenCV takes them for
 FIELDS = {"normal": ("tuple[float, float, float]", "Numbers"), "thickness": ("tuple[float, ...]", "Numbers"), "index":
           ("tuple[float, ...]", "Numbers"), "wedge": ("tuple[tuple[float, float], ...]", "Array | Sequence[Numbers]"),
           "materials": ("tuple[str, ...]", "Sequence[str]"), "center": ("tuple[float, float, float]", "Numbers"),
-          "shape": ("int", "int")}        # others: float, Number
+          "shape": ("int", "int"), "flags": ("GlassCalibrationFlags", "GlassCalibrationFlags | Literal[0]")}
+# Others by their types; what is neither is a number.
+FIELD_TYPES = {"Mat": ("Array | None", "Numbers | None"),
+               "vector_Mat": ("tuple[Array | None, ...]", "Array | Sequence[Numbers | None] | None"),
+               "vector_vector_Mat": ("tuple[tuple[Array | None, ...], ...]", "Views | None"), "int": ("int", "int"),
+               "bool": ("bool", "bool"), "TermCriteria": ("tuple[int, int, float]", "Sequence[float]")}
 POINTS = r"imag.*|objectPoints|points\d?|src|disparity|undistorted|cameraMatrix\d?|newCameraMatrix|P\d?|R1|R2|covariance|lengths"
 MAY_BE_NONE = r"distCoeffs\d?|R|P|T|newCameraMatrix|depth|calibrationCovariance|covariance|imagePointsDirect\d?|points3D|lengths|" \
-              r"poseCovariances|cameraCovariances?|Rs|Ts|rvecs|tvecs|targetCovariance"
+              r"cameraCovariances?|Rs|Ts|rvecs|tvecs"
 HEAD = '''# Written by generator/stubs.py: do not edit.
 from collections.abc import Sequence
 from enum import IntEnum, IntFlag
@@ -160,10 +167,16 @@ def functions(name, function, texts, indent=""):
 def class_of(info, texts):
     name = info.original_name
     code = f"class {name}:\n" + (block(texts[name][0], "    ") if name in texts else "")
+    writes = {}
     for prop in info.props:
-        read, write = FIELDS.get(prop.name, ("float", "Number"))
+        read, write = FIELDS.get(prop.name) or FIELD_TYPES.get(prop.tp, ("float", "Number"))
+        read = read.replace(" | None", "") if name.endswith("Result") else read
         code += f"    @property\n    def {prop.name}(self) -> {read}:\n" + block(texts[f"{name}.{prop.name}"][0], "        ")
         code += f"    @{prop.name}.setter\n    def {prop.name}(self, value: {write}) -> None: ...\n"
+        writes[prop.name] = f"{prop.name}: {write} = ..."
+    if name.endswith("Options"):
+        flags = writes.pop("flags")
+        code += f"    def __init__(self, {flags}, *, {', '.join(writes.values())}) -> None: ...\n"
     code += {"GlassWindow": WINDOW, "RefractiveCamera": CAMERA, "FileStorage": STORAGE}.get(name, "")
     for method, function in sorted(info.methods.items()):
         code += functions(method, function, texts.get(f"{name}.{method}", []), "    ")

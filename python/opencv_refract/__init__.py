@@ -12,11 +12,11 @@ GlassCalibrationFlags say what a calibration estimates.
 import sys as _sys
 
 from . import _native
-from ._native import *      # noqa: F401,F403  the calls, the two classes, error
+from ._native import *      # noqa: F401,F403  the calls, the classes, error
 from ._native import __version__    # noqa: F401
 from . import _enumerations
 from ._enumerations import *        # noqa: F401,F403  in place of plain numbers
-from . import _classes      # noqa: F401  which gives the two classes what C++ has no word for
+from . import _classes      # noqa: F401  which gives the classes what C++ has no word for
 
 _native._use_flags(_enumerations.GlassCalibrationFlags)
 for _enumeration in _enumerations.ALL:

@@ -1,11 +1,15 @@
 # This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
 # SPDX-License-Identifier: Apache-2.0
 
-"""What GlassWindow and RefractiveCamera have in Python and not in C++: repr, equality, copies, fields that cannot be misread."""
+"""What GlassWindow, RefractiveCamera and options have in Python and not in C++: repr, equality, copies, fields that cannot be
+misread."""
 import copyreg
 import inspect
 
+import numpy as np
+
 from . import _native
+from ._enumerations import GlassCalibrationFlags
 from ._values import Values
 
 WINDOW_FIELDS = ("normal", "thickness", "index", "distance", "outerIndex", "innerIndex", "wedge", "wavelength", "materials",
@@ -22,17 +26,61 @@ def as_values(read):
     return values
 
 
-def field(name, of_c):
-    def write(window, value):
-        if value is None:
-            raise _native.error(f"GlassWindow.{name} cannot be None")
+def none_if_empty(read):
+    def value(owner):
+        array = read(owner)
+        return None if array is None or array.size == 0 else array
+    return value
+
+
+def field(made, name, nothing=None):
+    """@param nothing what None stands for; None: it is refused"""
+    of_c = getattr(made, name)
+
+    def write(owner, value):
+        if value is None and nothing is None:
+            raise _native.error(f"{made.__name__}.{name} cannot be None")
+        if name == "flags" and value != 0 and isinstance(value, int) and not isinstance(value, GlassCalibrationFlags):
+            raise _native.error(f"{made.__name__}.flags is the plain number {value!r}. Take the GLASS_... of opencv_refract: a flag of "
+                                f"cv2 means something else here (a number of your own: GlassCalibrationFlags({value!r}))")
         try:
-            of_c.__set__(window, value)
+            of_c.__set__(owner, nothing if value is None else value)
         except (TypeError, ValueError) as why:
-            raise _native.error(f"GlassWindow.{name}: {str(why).replace('value ', 'the value ', 1)}") from None
+            raise _native.error(f"{made.__name__}.{name}: {str(why).replace('value ', 'the value ', 1)}") from None
 
     read = of_c.__get__
-    setattr(_native.GlassWindow, name, property(as_values(read) if name in SEQUENCES else read, write, doc=of_c.__doc__))
+    if made is _native.GlassWindow and name in SEQUENCES:
+        read = as_values(read)
+    elif isinstance(nothing, np.ndarray):
+        read = none_if_empty(read)
+    elif name == "flags":
+        def read(owner):
+            return GlassCalibrationFlags(of_c.__get__(owner))
+    setattr(made, name, property(read, write, doc=of_c.__doc__))
+
+
+def made_with(made, fields):
+    return made(**fields)
+
+
+def copies_of(made):
+    """They can be pickled and copied."""
+    names = [name for name, thing in vars(made).items() if inspect.isgetsetdescriptor(thing)]
+    copyreg.pickle(made, lambda thing: (made_with, (made, {name: getattr(thing, name) for name in names})))
+    return names
+
+
+def options(made):
+    """Arrays may be None, and lists of them."""
+    names = copies_of(made)
+    for name in names:
+        default = getattr(made(), name)
+        nothing = np.empty((0, 0)) if default is None else default if default == () else None
+        field(made, name, nothing)
+    keyword = inspect.Parameter.KEYWORD_ONLY
+    made.__signature__ = inspect.Signature([
+        inspect.Parameter(name, inspect.Parameter.POSITIONAL_OR_KEYWORD if name == "flags" else keyword, default=getattr(made(), name))
+        for name in sorted(names, key=lambda name: name != "flags")])
 
 
 def window_values(window):
@@ -97,7 +145,11 @@ def signature_of_window():
 
 
 for name in WINDOW_FIELDS:
-    field(name, getattr(_native.GlassWindow, name))
+    field(_native.GlassWindow, name)
+options(_native.GlassRigOptions)
+options(_native.BundleAdjustOptions)
+copies_of(_native.GlassRigResult)
+copies_of(_native.BundleAdjustResult)
 equality(_native.GlassWindow, window_values)
 equality(_native.RefractiveCamera, camera_values)
 _native.GlassWindow.__signature__ = signature_of_window()

@@ -47,6 +47,10 @@ refract.calibrateGlass([points], [pixels], [pixels], camera, flags=refract.GLASS
 flags, scores = refract.selectLensCoefficients([points], [[pixels]], [], [camera], [], [], []); flags | refract.GLASS_ROBUST
 refract.selectLensCoefficientsExtended([points], [[pixels]], [], [camera], [], [], [], 0)[2][0].shape
 refract.refractiveBundleAdjust([pixels], [camera], [], [], [], None, None, refract.GLASS_FIX_NORMAL)[3].shape
+options = refract.GlassRigOptions(refract.GLASS_ROBUST, cameraCovariances=[K], computeCovariance=True); options.targetCovariance = None
+options.flags |= refract.GLASS_FREE_INDEX; options.criteria = (3, 50, 1e-9); options.pixelCovariancesDirect = [[np.ones((5, 3))]]
+r, *_ = refract.calibrateGlassRigExtended([points], [], [[pixels]], [camera], [], [], [], [], [], options); np.diag(r.covariance)
+refract.refractiveBundleAdjustExtended([[pixels]], [camera], [], [], [], [], [], None, None, refract.BundleAdjustOptions())[0].inliers[0]
 found, rvec, tvec, e = refract.refractiveSolvePnP(points, pixels, camera, (0, 0, 0), [0, 0, 600], True); rvec.ravel()
 map1, map2 = refract.initRefractiveUndistortRectifyMap(camera, 600, None, None, (64, 48), 5); map1[0, 0]
 K2, roi = refract.getOptimalNewRefractiveCameraMatrix(camera, 600, (64, 48), 0); left: int = roi[0]
@@ -65,6 +69,9 @@ refract.triangulateRefractive(camera, camera, R, T, pixels, pixels, refract.TRIA
 refract.calibrateGlass([points], [pixels], [pixels], camera, flags=16)
 refract.calibrateGlass([points], [pixels], [pixels], K, None, window, refract.GLASS_FREE_INDEX)
 refract.refractiveSolvePnP(points, pixels, camera, True)
+refract.GlassRigOptions(cameraCovariance=[K])
+refract.BundleAdjustOptions(flags=16)
+refract.calibrateGlassRigExtended([points], [], [[pixels]], [camera], [], [], [], [], [], refract.BundleAdjustOptions())
 refract.refractiveProjectPoints(points, R, T, window)
 refract.refractiveProjectPoints([[1., 2., 3.]], R, T, camera)
 refract.triangulateRefractive(camera, R, T, [pixels])

@@ -235,10 +235,11 @@ def test_half_pixels_of_a_rig(rig, board):
         pixels[..., 1] = np.nan
     cameras = [refract.RefractiveCamera.create(K, D, start) for K, D in ((rig.K1, rig.D1), (rig.K2, rig.D2))]
     weights = [[np.tile((1., 0., 1.), (30, 1))]*8, [np.tile((4., 0., 4.), (30, 1))]*8]
-    rms = refract.calibrateGlassRigExtended(
+    options = refract.GlassRigOptions(pixelCovariancesDirect=weights, pixelCovariancesRefracted=weights)
+    result = refract.calibrateGlassRigExtended(
         board.target, [board.direct1, board.direct2], [board.glass1, halves], cameras, [0, 1],
-        [np.eye(3), rotation(rig.R)], [np.zeros(3), rig.T], (), (), pixelCovariancesDirect=weights, pixelCovariancesRefracted=weights)[0]
-    assert rms < 1e-5
+        [np.eye(3), rotation(rig.R)], [np.zeros(3), rig.T], (), (), options)[0]
+    assert result.rms < 1e-5
     for camera, window in zip(cameras, (rig.window1, rig.window2)):
         np.testing.assert_allclose(camera.window().normal, window.normal, atol=1e-5)
 
@@ -256,12 +257,14 @@ def test_half_pixels_of_a_bundle(rig):
         images2[-1][..., 1] = np.nan
     cameras = [rig.camera1.clone(), rig.camera2.clone()]
     weights = [[np.tile((1., 0., 1.), (40, 1))]*4, [np.tile((2., 0., 2.), (40, 1))]*4]
-    result = refract.refractiveBundleAdjustExtended(
+    options = refract.BundleAdjustOptions(refract.GLASS_FIX_NORMAL, pixelCovariances=weights)
+    result, _, _, found_rvecs, found_tvecs, points = refract.refractiveBundleAdjustExtended(
         [images1, images2], cameras, [0, 1], [np.eye(3), rotation(rig.R)], [np.zeros(3), rig.T], rvecs, tvecs, rig.points + 0.3, None,
-        flags=refract.GLASS_FIX_NORMAL, pixelCovariances=weights)
-    assert result[0] < 1e-4
-    moved = result[5].reshape(-1, 3)
-    for rvec, tvec, pixels in zip(result[3], result[4], images1):      # the scene's frame is free: where camera 1 sees it
+        options)
+    assert result.rms < 1e-4
+    assert [covariance.shape for covariance in result.viewCovariances] == [(6, 6)]*4
+    moved = points.reshape(-1, 3)
+    for rvec, tvec, pixels in zip(found_rvecs, found_tvecs, images1):      # the scene's frame is free: where camera 1 sees it
         seen = refract.refractiveProjectPoints(moved, rvec, tvec, rig.camera1)[0]
         np.testing.assert_allclose(seen, pixels, atol=1e-3)
     def lengths(points):
@@ -311,10 +314,11 @@ def test_calibrate_stereo(rig, board):
     camera1 = refract.RefractiveCamera.create(rig.K1, rig.D1, windows[0])
     camera2 = refract.RefractiveCamera.create(rig.K2, rig.D2, windows[1])
     from conftest import rotation
-    rms, R, T, rvecs, tvecs, deviations, covariance, per_view = refract.stereoCalibrateGlass(
+    result, R, T, rvecs, tvecs = refract.stereoCalibrateGlass(
         board.target, board.direct1, board.glass1, board.direct2, board.glass2, camera1, camera2,
         rotation(rig.R), rig.T.reshape(3, 1))
-    assert rms < 1e-5 and per_view.shape == (8, 4) and covariance.shape == (2*17 + 6, 2*17 + 6)
+    assert result.rms < 1e-5 and result.perViewErrors.shape == (8, 4) and result.covariance.shape == (2*17 + 6, 2*17 + 6)
+    assert result.degreesOfFreedom == 4*2*8*30 - 8*6 - 2*2 and 0 < result.pixelStd < 1e-5
     np.testing.assert_allclose(camera1.window().normal, rig.window1.normal, atol=1e-7)
     np.testing.assert_allclose(camera2.window().normal, rig.window2.normal, atol=1e-7)
 
@@ -322,28 +326,32 @@ def test_calibrate_stereo(rig, board):
 def test_calibrate_rig(rig, board):
     from conftest import rotation
     start = refract.GlassWindow((0., 0., 1.), 20., 1.5437, 50.)
-    def call(flags=0, rvecs=(), tvecs=(), **more):
+    def call(flags=0, rvecs=(), tvecs=(), **fields):
         cameras = [refract.RefractiveCamera.create(K, D, start) for K, D in ((rig.K1, rig.D1), (rig.K2, rig.D2))]
         result = refract.calibrateGlassRigExtended(
             board.target, [board.direct1, board.direct2], [board.glass1, board.glass2], cameras, [0, 1],
-            [np.eye(3), rotation(rig.R)], [np.zeros(3), rig.T], rvecs, tvecs, flags=flags, **more)
+            [np.eye(3), rotation(rig.R)], [np.zeros(3), rig.T], rvecs, tvecs, refract.GlassRigOptions(flags, **fields))
         for camera, window in zip(cameras, (rig.window1, rig.window2)):
             np.testing.assert_allclose(camera.window().normal, window.normal, atol=1e-6)
         return result
 
-    rms, Rs, Ts, rvecs, tvecs, deviations, covariance, per_view, status, inliers, minima = call()
-    assert rms < 1e-5 and per_view.shape == (8, 4) and covariance.shape == (2*17 + 6, 2*17 + 6)
-    assert deviations.shape == (2*17 + 6, 1) and minima.shape == (2, 5) and np.isnan(minima).all()
-    assert status.shape == (8, 4) and not status.any() and len(inliers) == 32 and all(mask.all() for mask in inliers)
+    result, Rs, Ts, rvecs, tvecs = call()
+    assert result.rms < 1e-5 and result.perViewErrors.shape == (8, 4) and result.covariance.shape == (2*17 + 6, 2*17 + 6)
+    assert result.stdDeviations.shape == (2*17 + 6, 1) and result.otherMinima.shape == (2, 5) and np.isnan(result.otherMinima).all()
+    assert result.imageStatus.shape == (8, 4) and not result.imageStatus.any()
+    assert len(result.inliers) == 32 and all(mask.all() for mask in result.inliers)
+    assert np.isnan(result.targetErrors).all()
+    assert call(computeCovariance=False)[0].covariance.shape == (0, 0)
     np.testing.assert_allclose(np.squeeze(tvecs), board.tvecs, atol=1e-4)
     np.testing.assert_allclose(np.squeeze(call(refract.GLASS_FREE_EXTRINSICS)[2][1]), rig.T, atol=1e-4)
 
     cameras = [refract.RefractiveCamera.create(K, D, start) for K, D in ((rig.K1, rig.D1), (rig.K2, rig.D2))]
-    moved = refract.calibrateGlassRigTargets(
+    moved = refract.calibrateGlassRigExtended(
         board.target, [board.direct1, board.direct2], [board.glass1, board.glass2], cameras, [0, 1],
-        [np.eye(3), rotation(rig.R)], [np.zeros(3), rig.T], [], [], np.diag([1e-3] + 3*[1e-3] + 3*[1.])**2)
-    assert len(moved) == 12 and moved[6].shape == (2*17 + 6 + 7, 2*17 + 6 + 7)
-    assert moved[-1].shape == (7, 1) and np.abs(moved[-1]).max() < 1e-3
+        [np.eye(3), rotation(rig.R)], [np.zeros(3), rig.T], [], [],
+        refract.GlassRigOptions(targetCovariance=np.diag([1e-3] + 3*[1e-3] + 3*[1.])**2))[0]
+    assert moved.covariance.shape == (2*17 + 6 + 7, 2*17 + 6 + 7)
+    assert moved.targetErrors.shape == (7, 1) and np.abs(moved.targetErrors).max() < 1e-3
 
     known = dict(rvecs=board.rvecs, tvecs=board.tvecs, flags=refract.GLASS_USE_POSES)
     np.testing.assert_array_equal(np.squeeze(call(**known)[4]), board.tvecs)
@@ -352,9 +360,9 @@ def test_calibrate_rig(rig, board):
     wrong, _ = np.divmod(np.arange(60.).reshape(30, 1, 2), 7)
     glass1, board.glass1 = board.glass1, [board.glass1[0] + wrong*(np.arange(30) % 4 == 0)[:, None, None],
                                           *board.glass1[1:]]
-    result = call(refract.GLASS_ROBUST)
+    result = call(refract.GLASS_ROBUST)[0]
     board.glass1 = glass1
-    np.testing.assert_array_equal(np.flatnonzero(result[9][1] == 0), np.arange(4, 30, 4))
+    np.testing.assert_array_equal(np.flatnonzero(result.inliers[1] == 0), np.arange(4, 30, 4))
 
 
 def test_calibrate_rig_in_short(rig, board):

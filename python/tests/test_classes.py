@@ -321,3 +321,52 @@ def test_types_are_kept_by_their_objects_alone():
     for _ in range(100):
         camera.window()
     assert sys.getrefcount(refract.GlassWindow) <= before + 1
+
+
+def test_options_are_made_of_fields():
+    options = refract.GlassRigOptions(refract.GLASS_ROBUST, criteria=(3, 50, 1e-9), cameraCovariances=[np.eye(8), None])
+    assert options.flags == refract.GLASS_ROBUST and options.criteria == (3, 50, 1e-9)
+    assert options.cameraCovariances[0].shape == (8, 8) and options.cameraCovariances[1] is None
+    assert options.targetCovariance is None and options.computeCovariance
+    options.cameraCovariances, options.targetCovariance = None, np.eye(7)
+    assert options.cameraCovariances == () and options.targetCovariance.shape == (7, 7)
+    options.targetCovariance = None
+    assert options.targetCovariance is None
+    flags = refract.GlassCalibrationFlags(3)
+    assert refract.GlassRigOptions().flags == 0 and refract.BundleAdjustOptions(flags=flags).flags is flags
+    options.flags |= refract.GLASS_FREE_INTRINSICS
+    assert options.flags == refract.GLASS_ROBUST | refract.GLASS_FREE_INTRINSICS
+
+
+def test_options_own_their_arrays():
+    known, weights = np.eye(7), np.ones((5, 3))
+    options = refract.GlassRigOptions(targetCovariance=known, pixelCovariancesDirect=[[weights]], cameraCovariances=[np.eye(8), np.eye(8)])
+    known[:], weights[:] = 0, 0
+    assert options.targetCovariance[0, 0] == 1 and options.pixelCovariancesDirect[0][0].min() == 1
+    options.cameraCovariances = [2*np.eye(8), None]
+    assert options.cameraCovariances[0][0, 0] == 2 and options.cameraCovariances[1] is None
+    with pytest.raises(refract.error):
+        options.cameraCovariances = [3*np.eye(8), "none"]
+    assert options.cameraCovariances[0][0, 0] == 2
+
+
+def test_options_and_results_are_pickled():
+    options = refract.GlassRigOptions(refract.GLASS_ROBUST, targetCovariance=np.eye(7), criteria=(3, 20, 1e-6))
+    result = refract.BundleAdjustResult(rms=0.5, covariance=np.eye(3), inliers=[np.ones((4, 1), np.uint8)])
+    for same in (copy.deepcopy, lambda thing: pickle.loads(pickle.dumps(thing))):
+        again = same(options)
+        assert again.flags is options.flags and again.criteria == options.criteria and again.targetCovariance.shape == (7, 7)
+        again = same(result)
+        assert again.rms == 0.5 and again.covariance.shape == (3, 3) and again.inliers[0].all() and again.perViewErrors.shape == (0, 0)
+
+
+def test_options_that_there_are_not_are_refused():
+    for made in (refract.GlassRigOptions, refract.BundleAdjustOptions):
+        name = made.__name__
+        for wrong in (lambda: made(1, 2), lambda: made(cameraCovariance=[]), lambda: made(flags=1.5), lambda: made(flags=None),
+                      lambda: made(16), lambda: made(refract.GLASS_ROBUST, flags=refract.GLASS_ROBUST),
+                      lambda: made(criteria="many"), lambda: made(cameraCovariances=7)):
+            with pytest.raises(refract.error, match=name):
+                wrong()
+        with pytest.raises(AttributeError):
+            made().cameraCovariance = []

@@ -59,13 +59,14 @@ near = np.abs(distances) < SEARCH               # false for nan
 place = sum(len(camera.parameterNames()) for camera in cameras)
 known = np.zeros((place + 6, place + 6))
 known[place:, place:] = covariance_of_turn(before, T, MAY_TURN)
-result = refract.refractiveBundleAdjustExtended([[left[near]], [right[near]]], cameras, [], [Rs[0], before], [Ts[0], T], None, None,
-                                                None, None, flags=refract.GLASS_FIX_NORMAL | refract.GLASS_ROBUST, rigCovariance=known)
-rms, R, covariance, inliers = result[0], result[1][1], result[7], result[10]
+options = refract.BundleAdjustOptions(refract.GLASS_FIX_NORMAL | refract.GLASS_ROBUST, rigCovariance=known)
+result, Rs, *_ = refract.refractiveBundleAdjustExtended([[left[near]], [right[near]]], cameras, [], [Rs[0], before], [Ts[0], T], None,
+                                                        None, None, None, options)
+R = Rs[1]
 
-print(f"{near.sum()} of {len(alike)} matches are near their curves, {np.count_nonzero(inliers[0])} agree; {rms:.3f} px RMS")
+print(f"{near.sum()} of {len(alike)} matches are near their curves, {np.count_nonzero(result.inliers[0])} agree; {result.rms:.3f} px RMS")
 angles = np.degrees(cv2.Rodrigues(R @ before.T)[0]).ravel()
-stds = np.degrees(np.sqrt(np.diag(covariance)[place:place + 3]))
+stds = np.degrees(np.sqrt(np.diag(result.covariance)[place:place + 3]))
 for axis, angle, std, true in zip("xyz", angles, stds, (-bump, 0, 0)):
     print(f"camera 2 turned about {axis} by {angle:7.4f} +- {std:.4f} degrees (true: {true:.4f})")
     assert abs(angle - true) < 4*std

@@ -87,7 +87,6 @@ void tryStereo(Bytes& bytes)
 {
     Scene scene(bytes, 2);
     std::vector<Mat> rvecs, tvecs;
-    Mat deviations, covariance, errors;
     Mat &R = scene.Rs[1], &T = scene.Ts[1];
     const std::vector<Mat> objects = arraysOf(bytes, scene.objectPoints);
     const std::vector<Mat> through1 = arraysOf(bytes, scene.refracted[0]), through2 = arraysOf(bytes, scene.refracted[1]);
@@ -97,9 +96,10 @@ void tryStereo(Bytes& bytes)
         direct1 = arraysOf(bytes, scene.direct[0]);
         direct2 = arraysOf(bytes, scene.direct[1]);
     }
-    const int flags = flagsOf(bytes);
+    GlassRigOptions options(flagsOf(bytes));
+    options.criteria = criteriaOf(bytes);
     const double rms = stereoCalibrateGlass(objects, direct1, through1, direct2, through2, scene.cameras[0], scene.cameras[1], R, T,
-                                            rvecs, tvecs, deviations, covariance, errors, flags, criteriaOf(bytes));
+                                            rvecs, tvecs, options).rms;
     promise(rms >= 0 && std::isfinite(rms), "the RMS is a number");
     checkPoses(rvecs, tvecs, objects.size());
     checkCameras(scene);
@@ -119,21 +119,18 @@ void tryRig(Bytes& bytes)
             direct.push_back(arraysOf(bytes, scene.direct[c]));
         windows.push_back(bytes.rarely() ? bytes.below(256) - 3 : bytes.below(2));
     }
-    int flags = flagsOf(bytes);
-    std::vector<Mat> poseCovariances;
+    GlassRigOptions options(flagsOf(bytes));
     if (bytes.maybe())
     {
-        flags |= GLASS_USE_POSES;
+        options.flags |= GLASS_USE_POSES;
         for (size_t v = 0; v < objects.size(); v++)
-            poseCovariances.push_back(bytes.maybe() ? Mat(Mat::eye(6, 6, CV_64F)*bytes.about(0, 1e-2)) : Mat());
+            options.poseCovariances.push_back(bytes.maybe() ? Mat(Mat::eye(6, 6, CV_64F)*bytes.about(0, 1e-2)) : Mat());
     }
     if (bytes.rarely())
         scene.cameras[0].release();
-    Mat deviations, covariance, errors, status, minima;
-    std::vector<Mat> inliers;
+    options.criteria = criteriaOf(bytes);
     const double rms = calibrateGlassRig(objects, direct, through, scene.cameras, windows, scene.Rs, scene.Ts, scene.rvecs,
-                                         scene.tvecs, deviations, covariance, errors, status, inliers, minima, flags,
-                                         poseCovariances, criteriaOf(bytes));
+                                         scene.tvecs, options).rms;
     promise(rms >= 0 && std::isfinite(rms), "the RMS is a number");
     checkPoses(scene.rvecs, scene.tvecs, objects.size());
     checkCameras(scene);

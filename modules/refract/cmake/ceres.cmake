@@ -36,7 +36,8 @@ function(refract_choose_sources module_dir)
        ${module_dir}/src/start/*.cpp ${module_dir}/src/calibrate/*.cpp)
   set(without ${module_dir}/src/calibrate/without_ceres.cpp ${module_dir}/test/test_without_ceres.cpp)
   list(REMOVE_ITEM calibrators ${without} ${module_dir}/src/calibrate/calibrate_normal.cpp
-       ${module_dir}/src/calibrate/calibration_error.cpp ${module_dir}/src/start/normal_from_pairs.cpp)
+       ${module_dir}/src/calibrate/calibration_error.cpp ${module_dir}/src/calibrate/options.cpp
+       ${module_dir}/src/start/normal_from_pairs.cpp)
   set_source_files_properties(${calibrators} ${module_dir}/test/test_calibration.cpp
                               ${module_dir}/test/test_calibration_error.cpp ${module_dir}/perf/perf_calibration.cpp
                               PROPERTIES HEADER_FILE_ONLY ON)

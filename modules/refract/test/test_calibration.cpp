@@ -58,17 +58,16 @@ TEST(Refract_StereoCalibrateGlass, finds_both_windows)
                                 second = RefractiveCamera::create(K2(), D2(), straight(window2()));
     Mat rotation(R()), translation(T());
     std::vector<Vec3d> rvecs, tvecs;
-    Mat deviations, covariance, perView;
-    const double rms = stereoCalibrateGlass(boards(), views(bare1()), views(camera1()), views(bare2(), true),
-                                            views(camera2(), true), first, second, rotation, translation, rvecs, tvecs,
-                                            deviations, covariance, perView);
-    EXPECT_NEAR(0, rms, 1e-6);
+    const GlassRigResult result = stereoCalibrateGlass(boards(), views(bare1()), views(camera1()), views(bare2(), true),
+                                                       views(camera2(), true), first, second, rotation, translation, rvecs, tvecs);
+    EXPECT_NEAR(0, result.rms, 1e-6);
     EXPECT_NEAR(0, angle(first->window().normal, window1().normal), 1e-6);
     EXPECT_NEAR(0, angle(second->window().normal, window2().normal), 1e-6);
-    EXPECT_EQ(Size(4, 5), perView.size());
+    EXPECT_EQ(Size(4, 5), result.perViewErrors.size());
+    EXPECT_EQ(2*16 + 6, result.stdDeviations.rows);
 
     EXPECT_REFUSED(stereoCalibrateGlass(boards(), noArray(), views(camera1()), noArray(), PixelViews(1), first,
-                                        second, rotation, translation, rvecs, tvecs, deviations, covariance, perView),
+                                        second, rotation, translation, rvecs, tvecs),
                    "imagePointsRefracted2");
 }
 
@@ -114,7 +113,7 @@ TEST(Refract_CalibrateGlassRig, finds_windows_and_a_wrong_point)
     std::vector<Ptr<RefractiveCamera> > cameras;
     cameras.push_back(RefractiveCamera::create(K1(), D1(), straight(window1())));
     cameras.push_back(RefractiveCamera::create(K2(), D2(), straight(window2())));
-    std::vector<Mat> Rs(2), Ts(2), rvecs, tvecs, inliers;
+    std::vector<Mat> Rs(2), Ts(2), rvecs, tvecs;
     Rs[0] = Mat::eye(3, 3, CV_64F);
     Rs[1] = Mat(R());
     Ts[0] = Mat::zeros(3, 1, CV_64F);
@@ -125,17 +124,16 @@ TEST(Refract_CalibrateGlassRig, finds_windows_and_a_wrong_point)
     glass1[3][7].x += 5;
     const std::vector<std::vector<Mat> > glass = asMats(glass1, views(camera2(), true)),
                                          direct = asMats(views(bare1()), views(bare2(), true));
-    Mat deviations, covariance, perView, status, others;
-    const double rms = calibrateGlassRig(boards(), direct, glass, cameras, windows, Rs, Ts, rvecs, tvecs, deviations,
-                                         covariance, perView, status, inliers, others, GLASS_ROBUST);
-    EXPECT_NEAR(0, rms, 1e-6);
+    GlassRigOptions options(GLASS_ROBUST);
+    const GlassRigResult result = calibrateGlassRig(boards(), direct, glass, cameras, windows, Rs, Ts, rvecs, tvecs, options);
+    EXPECT_NEAR(0, result.rms, 1e-6);
     EXPECT_NEAR(0, angle(cameras[0]->window().normal, window1().normal), 1e-6);
     EXPECT_NEAR(0, angle(cameras[1]->window().normal, window2().normal), 1e-6);
-    EXPECT_EQ(Size(4, 5), status.size());
-    EXPECT_EQ(0, cv::countNonZero(status));
-    ASSERT_EQ(20u, inliers.size());
-    EXPECT_EQ(29, cv::countNonZero(inliers[4*3 + 1]));
-    EXPECT_EQ(0, inliers[4*3 + 1].at<uchar>(7));
+    EXPECT_EQ(Size(4, 5), result.imageStatus.size());
+    EXPECT_EQ(0, cv::countNonZero(result.imageStatus));
+    ASSERT_EQ(20u, result.inliers.size());
+    EXPECT_EQ(29, cv::countNonZero(result.inliers[4*3 + 1]));
+    EXPECT_EQ(0, result.inliers[4*3 + 1].at<uchar>(7));
 
     Rs[0].at<double>(0, 1) = 1e-8;
     windows.clear();                // each its own
@@ -143,18 +141,19 @@ TEST(Refract_CalibrateGlassRig, finds_windows_and_a_wrong_point)
                                      Rs, Ts, rvecs, tvecs, GLASS_FREE_EXTRINSICS), 1e-6);
     EXPECT_NEAR(590, tvecs[0].at<double>(2), 1e-3);
 
-    Mat targetErrors;
-    calibrateGlassRig(boards(), direct, glass, cameras, windows, Rs, Ts, rvecs, tvecs, deviations, covariance, perView, status,
-                      inliers, others, 1e-6*Mat::eye(7, 7, CV_64F), targetErrors, GLASS_ROBUST);
-    EXPECT_EQ(Size(1, 7), targetErrors.size());
-    EXPECT_NEAR(0, cv::norm(targetErrors, cv::NORM_INF), 1e-6);
-    EXPECT_GT(1.001e-3, deviations.at<double>(deviations.rows - 7));
-    EXPECT_REFUSED(calibrateGlassRig(boards(), direct, glass, cameras, windows, Rs, Ts, rvecs, tvecs, deviations, covariance, perView,
-                                     status, inliers, others, Mat::eye(6, 6, CV_64F), targetErrors), "targetCovariance is 6x6");
+    options.targetCovariance = 1e-6*Mat::eye(7, 7, CV_64F);
+    const GlassRigResult moved = calibrateGlassRig(boards(), direct, glass, cameras, windows, Rs, Ts, rvecs, tvecs, options);
+    EXPECT_EQ(Size(1, 7), moved.targetErrors.size());
+    EXPECT_NEAR(0, cv::norm(moved.targetErrors, cv::NORM_INF), 1e-6);
+    EXPECT_EQ(result.stdDeviations.rows + 7, moved.stdDeviations.rows);
+    EXPECT_GT(1.001e-3, moved.stdDeviations.at<double>(moved.stdDeviations.rows - 7));
+    options.targetCovariance = Mat::eye(6, 6, CV_64F);
+    EXPECT_REFUSED(calibrateGlassRig(boards(), direct, glass, cameras, windows, Rs, Ts, rvecs, tvecs, options),
+                   "targetCovariance is 6x6");
 
     windows.resize(1);
-    EXPECT_REFUSED(calibrateGlassRig(boards(), direct, glass, cameras, windows, Rs, Ts, rvecs, tvecs, deviations,
-                                     covariance, perView, status, inliers, others), "windowOfCamera has 1 elements");
+    EXPECT_REFUSED(calibrateGlassRig(boards(), direct, glass, cameras, windows, Rs, Ts, rvecs, tvecs, GlassRigOptions()),
+                   "windowOfCamera has 1 elements");
 }
 
 // Two standing cameras and known distances between some of the points.
@@ -196,17 +195,21 @@ TEST(Refract_BundleAdjust, finds_both_windows)
             observations.push_back(Vec3i(0, camera, point));
             listed.push_back(pixels[camera][point]);
         }
-    std::vector<Mat> rvecs(1, Mat::zeros(3, 1, CV_64F)), tvecs(1, Mat::zeros(3, 1, CV_64F)), viewCovariances;
-    Mat deviations, covariance, pointDeviations, perViewErrors, inliers;
+    std::vector<Mat> rvecs(1, Mat::zeros(3, 1, CV_64F)), tvecs(1, Mat::zeros(3, 1, CV_64F));
     std::vector<Point3d> again;
-    EXPECT_NEAR(0, refractiveBundleAdjust(observations, listed, cameras, std::vector<int>(), Rs, Ts, rvecs, tvecs, again, lengths,
-                                          deviations, covariance, viewCovariances, pointDeviations, perViewErrors, inliers), 1e-5);
+    const BundleAdjustOptions options;
+    const BundleAdjustResult result = refractiveBundleAdjust(observations, listed, cameras, std::vector<int>(), Rs, Ts, rvecs, tvecs,
+                                                             again, lengths, options);
+    EXPECT_NEAR(0, result.rms, 1e-5);
     ASSERT_EQ(points.size(), again.size());
     EXPECT_NEAR(0, cv::norm(again[17] - points[17]), 1e-3);
-    EXPECT_EQ((int)listed.size(), countNonZero(inliers));
+    ASSERT_EQ(1u, result.inliers.size());
+    EXPECT_EQ((int)listed.size(), countNonZero(result.inliers[0]));
+    ASSERT_EQ(1u, result.viewCovariances.size());
+    EXPECT_EQ((int)points.size(), result.pointDeviations.rows);
     observations[5][1] = 2;
     EXPECT_REFUSED(refractiveBundleAdjust(observations, listed, cameras, std::vector<int>(), Rs, Ts, rvecs, tvecs, again, lengths,
-                                          deviations, covariance, viewCovariances, pointDeviations, perViewErrors, inliers),
+                                          options),
                    "observations[5] is of camera 2");
 }
 

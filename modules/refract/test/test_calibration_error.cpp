@@ -120,11 +120,11 @@ TEST(Refract_CalibrationError, of_two_cameras)
         return errorOf([&] {
             GlassWindow window = window1();
             window.outerIndex = 1.333;
-            Mat rotation(scene::rotation(0.01, turn)), T(translation), deviations, covariance, perView;
+            Mat rotation(scene::rotation(0.01, turn)), T(translation);
             std::vector<Vec3d> rvecs, tvecs;
             stereoCalibrateGlass(boards(), views(bare1()), views(camera1()), noArray(), second,
                                  RefractiveCamera::create(K1(), D1(), window), camera2(), rotation, T, rvecs, tvecs,
-                                 deviations, covariance, perView, flags);
+                                 GlassRigOptions(flags));
         }); };
     const PixelViews seen = views(camera2(), true);
     expectError(CalibrationError::WINDOW_NOT_SEEN, Error::StsBadArg, stereo(0.3, T(), PixelViews(5), 0), -1, 1);
@@ -176,9 +176,9 @@ struct Scene
         Rs[1] = Mat(R());
         Ts[0] = Mat::zeros(3, 1, CV_64F);
         Ts[1] = Mat(T());
-        Mat points(scenePoints(), true), deviations, covariance, ofPoints, perView;
+        Mat points(scenePoints(), true);
         return errorOf([&] { refractiveBundleAdjust(images, cameras, std::vector<int>(), Rs, Ts, rvecs, tvecs, points, lengths,
-                                                    deviations, covariance, ofPoints, perView, inliers, flags); });
+                                                    BundleAdjustOptions(flags)); });
     }
 
     // The point is not seen in the view.

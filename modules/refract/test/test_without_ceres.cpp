@@ -18,10 +18,10 @@ TEST(Refract_WithoutCeres, calibrators_say_what_is_missing)
     EXPECT_REFUSED(calibrateGlass(boards(), views(bare1()), views(camera1()), K1(), D1(), window, rvecs, tvecs),
                    "calibrateGlass needs the library Ceres");
     EXPECT_REFUSED(calibrateGlass(boards(), views(bare1()), views(camera1()), camera1(), rvecs, tvecs), "REFRACT_WITH_CERES=ON");
-    Mat rotation(R()), translation(T()), deviations, covariance, perView;
+    Mat rotation(R()), translation(T());
     EXPECT_REFUSED(stereoCalibrateGlass(boards(), views(bare1()), views(camera1()), views(bare2(), true),
-                                        views(camera2(), true), camera1(), camera2(), rotation, translation, rvecs, tvecs,
-                                        deviations, covariance, perView), "stereoCalibrateGlass needs the library Ceres");
+                                        views(camera2(), true), camera1(), camera2(), rotation, translation, rvecs, tvecs),
+                   "stereoCalibrateGlass needs the library Ceres");
 }
 
 TEST(Refract_WithoutCeres, the_code_is_not_implemented)
@@ -35,6 +35,10 @@ TEST(Refract_WithoutCeres, the_code_is_not_implemented)
                    "selectLensCoefficients needs the library Ceres");
     try { calibrateGlassRig(boards(), none, none, cameras, std::vector<int>(), Rs, Ts, rvecs, tvecs); }
     catch (const cv::Exception& e) { rig = e.code; }
+    EXPECT_REFUSED(calibrateGlassRig(boards(), none, none, cameras, std::vector<int>(), Rs, Ts, rvecs, tvecs, GlassRigOptions()),
+                   "calibrateGlassRig needs the library Ceres");
+    EXPECT_REFUSED(refractiveBundleAdjust(none, cameras, std::vector<int>(), Rs, Ts, rvecs, tvecs, points, noArray(),
+                                          BundleAdjustOptions()), "refractiveBundleAdjust needs the library Ceres");
     try { refractiveBundleAdjust(views(camera1()), cameras, std::vector<int>(), Rs, Ts, points, noArray()); }
     catch (const cv::Exception& e) { bundle = e.code; }
     EXPECT_EQ(int(Error::StsNotImplemented), rig);

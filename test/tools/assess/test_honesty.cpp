@@ -283,11 +283,10 @@ Fit fitAtKnownPoses(const RigData& data, const std::vector<BoardPose>& poses, co
         Rs.push_back(Mat(start.extrinsics[c].R, true));
         Ts.push_back(Mat(start.extrinsics[c].T, true));
     }
-    fit.rms = calibrateGlassRig(std::vector<std::vector<Point3d>>(poses.size(), data.views[0].objectPoints), direct, glass,
-                                fit.rig.cameras, std::vector<int>(), Rs, Ts, fit.rvecs, fit.tvecs, fit.stdDeviations,
-                                fit.covariance, noArray(), fit.imageStatus, fit.inliers, fit.otherMinima,
-                                flags | GLASS_USE_POSES | GLASS_FREE_INTRINSICS | GLASS_FREE_EXTRINSICS,
-                                std::vector<Mat>(poses.size(), poseCovariance));
+    GlassRigOptions options(flags | GLASS_USE_POSES | GLASS_FREE_INTRINSICS | GLASS_FREE_EXTRINSICS);
+    options.poseCovariances.assign(poses.size(), poseCovariance);
+    setResult(calibrateGlassRig(std::vector<std::vector<Point3d>>(poses.size(), data.views[0].objectPoints), direct, glass,
+                                fit.rig.cameras, std::vector<int>(), Rs, Ts, fit.rvecs, fit.tvecs, options), fit);
     if (cameras == 2)
     {
         fit.rig.extrinsics[1] = {Rs[1], Ts[1]};

@@ -229,24 +229,30 @@ BundleAdjustment adjustBundle(const BundleStart& start, const Matches& matches, 
     Fit& fit = result.fit;
     fit.rig = start.rig.clone();
     std::vector<std::vector<Mat>> pixels;
-    std::vector<Mat> Rs, Ts, inliers;
+    std::vector<Mat> Rs, Ts;
     for (int c = 0; c < matches.cameraCount(); c++)
     {
         pixels.push_back({Mat(matches.pixels[c], true)});
         Rs.push_back(Mat(fit.rig.extrinsics[c].R, true));
         Ts.push_back(Mat(fit.rig.extrinsics[c].T, true));
     }
-    const TermCriteria criteria(TermCriteria::COUNT + TermCriteria::EPS, iterations, 1e-12);
-    Mat points3D, deviations;
+    BundleAdjustOptions options(start.flags | (robust ? GLASS_ROBUST : 0));
+    options.criteria.maxCount = iterations;
+    options.pixelCovariances = covariancesOf(matches);
+    options.rigCovariance = start.covariance;
+    options.lengthScaleStd = lengths.commonStd();
+    Mat points3D;
+    BundleAdjustResult found;
     adjustOrExplain([&] {
-        fit.rms = refractiveBundleAdjust(pixels, fit.rig.cameras, fit.rig.windows, Rs, Ts, noArray(), noArray(), points3D, lengths.rows(),
-                                         fit.stdDeviations, fit.covariance, deviations, noArray(), inliers,
-                                         start.flags | (robust ? GLASS_ROBUST : 0), noArray(), criteria, noArray(), covariancesOf(matches),
-                                         start.covariance, lengths.commonStd());
+        found = refractiveBundleAdjust(pixels, fit.rig.cameras, fit.rig.windows, Rs, Ts, noArray(), noArray(), points3D, lengths.rows(),
+                                       options);
     });
+    fit.rms = found.rms;
+    fit.stdDeviations = found.stdDeviations;
+    fit.covariance = found.covariance;
     for (int c = 1; c < matches.cameraCount(); c++)
         fit.rig.extrinsics[c] = {Rs[c], Ts[c]};
-    setPoints(matches, points3D, deviations, inliers, result);
+    setPoints(matches, points3D, found.pointDeviations, found.inliers, result);
     double squaredPixels;
     result.rmsOfCamera = rmsOfCameras(matches, result, squaredPixels);
     setNoise(start, lengths, squaredPixels, 0, result);

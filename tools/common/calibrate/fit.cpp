@@ -165,6 +165,18 @@ std::vector<Residual> residualsOf(const RigData& data, const Fit& fit)
     return residuals;
 }
 
+void setResult(const GlassRigResult& result, Fit& fit)
+{
+    fit.stdDeviations = result.stdDeviations;
+    fit.covariance = result.covariance;
+    fit.imageStatus = result.imageStatus;
+    fit.inliers = result.inliers;
+    fit.otherMinima = result.otherMinima;
+    fit.rms = result.rms;
+    fit.sigma = result.pixelStd;
+    fit.dof = result.degreesOfFreedom;
+}
+
 /** The library's error with a text (err) in the tools' words: views by the names of their files, options in place of arguments.
 @param views of the data, which the library was given */
 static CalibrationError inToolsWords(const CalibrationError& error, const RigData& data, const std::vector<int>& views)
@@ -182,7 +194,7 @@ Fit fitImages(const RigData& data, const RigModel& start, const std::vector<int>
     startAtKnown(fit.rig);
     fit.views = views;
     std::vector<std::vector<Point3d>> objectPoints;
-    std::vector<Mat> poseCovariances;
+    GlassRigOptions options(data.cameraCount == 1 ? flags : flags | GLASS_FREE_EXTRINSICS);
     for (int i : views)
     {
         const View& view = data.views[i];
@@ -191,7 +203,7 @@ Fit fitImages(const RigData& data, const RigModel& start, const std::vector<int>
             continue;
         fit.rvecs.push_back(view.pose->rvec);
         fit.tvecs.push_back(view.pose->tvec);
-        poseCovariances.push_back(view.pose->covariance);
+        options.poseCovariances.push_back(view.pose->covariance);
     }
     std::vector<Mat> Rs, Ts;
     Mat_<double> targetErrors;
@@ -200,18 +212,15 @@ Fit fitImages(const RigData& data, const RigModel& start, const std::vector<int>
         Rs.push_back(Mat(fit.rig.extrinsics[c].R, true));
         Ts.push_back(Mat(fit.rig.extrinsics[c].T, true));
     }
-    const TermCriteria criteria(TermCriteria::COUNT + TermCriteria::EPS,
-                                flags & GLASS_ROBUST ? std::min(maxIterations, MAX_ROBUST_ITERATIONS) : maxIterations, 1e-12);
+    options.criteria.maxCount = flags & GLASS_ROBUST ? std::min(maxIterations, MAX_ROBUST_ITERATIONS) : maxIterations;
+    options.cameraCovariances = covariancesOf(fit.rig, flags);
+    options.targetCovariance = fit.rig.targetCovariance;
     try
     {
-        const FitStatistics statistics =
-            fitGlassRig(objectPoints, imagesOf(data, views, false), imagesOf(data, views, true), fit.rig.cameras, fit.rig.windows, Rs, Ts,
-                        fit.rvecs, fit.tvecs, fit.stdDeviations, fit.covariance, noArray(), fit.imageStatus, fit.inliers, fit.otherMinima,
-                        fit.rig.targetCovariance, targetErrors, data.cameraCount == 1 ? flags : flags | GLASS_FREE_EXTRINSICS,
-                        poseCovariances, criteria, covariancesOf(fit.rig, flags));
-        fit.rms = statistics.rms;
-        fit.sigma = statistics.sigma;
-        fit.dof = statistics.freedom;
+        const GlassRigResult result = fitGlassRig(objectPoints, imagesOf(data, views, false), imagesOf(data, views, true),
+                                                  fit.rig.cameras, fit.rig.windows, Rs, Ts, fit.rvecs, fit.tvecs, options);
+        setResult(result, fit);
+        targetErrors = result.targetErrors;
     }
     catch (const CalibrationError& e)
     {

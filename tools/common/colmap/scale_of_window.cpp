@@ -159,12 +159,13 @@ double errorAt(double factor, const Survey& survey, const RigModel& rig, const T
         const double length = norm(points[pair.first] - points[pair.second]);
         lengths.push_back({(double)pair.first, (double)pair.second, length, OF_PAIR*length});
     }
-    Mat deviations, covariance, errors, inliers;
+    BundleAdjustOptions options(GLASS_FIX_NORMAL | GLASS_ROBUST);
+    options.criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 100, 1e-9);
+    options.computePointDeviations = options.computeViewCovariances = false;
     try
     {
         refractiveBundleAdjust(trials.observations, trials.pixels, fitted.cameras, rig.windows, Rs, Ts, rvecs, tvecs, points, lengths,
-                               deviations, covariance, noArray(), noArray(), errors, inliers, GLASS_FIX_NORMAL | GLASS_ROBUST,
-                               noArray(), TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 100, 1e-9));
+                               options);
     }
     catch (const cv::Exception&)            // a scene that is too near
     {

@@ -39,16 +39,18 @@ void adjust(const Survey& survey, const BundleStart& bundle, const SurveyStart& 
         Rs.push_back(Mat(place.R, true));
         Ts.push_back(Mat(place.T, true));
     }
-    const std::vector<Mat> known = covariancesOfPoses(start, result.rvecs, result.tvecs);
+    BundleAdjustOptions options(bundle.flags | (robust ? GLASS_ROBUST : 0));
+    options.poseCovariances = covariancesOfPoses(start, result.rvecs, result.tvecs);
+    if (!options.poseCovariances.empty())
+        options.flags |= GLASS_USE_POSES;
+    options.rigCovariance = bundle.covariance;
+    options.lengthScaleStd = start.lengths.commonStd();
+    options.covarianceMemory = 1e9*memory;
     std::vector<Mat> rvecs = arraysOf(result.rvecs), tvecs = arraysOf(result.tvecs);
-    const int flags = bundle.flags | (robust ? GLASS_ROBUST : 0) | (known.empty() ? 0 : GLASS_USE_POSES);
-    const TermCriteria criteria(TermCriteria::COUNT + TermCriteria::EPS, 1000, 1e-12);
-    Mat errors;
+    BundleAdjustResult found;
     const auto run = [&] {
-        fit.rms = refractiveBundleAdjust(survey.observations, survey.pixels, fit.rig.cameras, fit.rig.windows, Rs, Ts, rvecs, tvecs, points,
-                                         start.lengths.rows(), fit.stdDeviations, fit.covariance, result.viewCovariances, deviations,
-                                         errors, result.used, flags, known, criteria, noArray(), noArray(), bundle.covariance,
-                                         start.lengths.commonStd(), 1e9*memory);
+        found = refractiveBundleAdjust(survey.observations, survey.pixels, fit.rig.cameras, fit.rig.windows, Rs, Ts, rvecs, tvecs, points,
+                                       start.lengths.rows(), options);
     };
     adjustOrExplain([&] {
         try
@@ -66,6 +68,12 @@ void adjust(const Survey& survey, const BundleStart& bundle, const SurveyStart& 
                           + "; leave it out of the model, or its wrong points");
         }
     });
+    fit.rms = found.rms;
+    fit.stdDeviations = found.stdDeviations;
+    fit.covariance = found.covariance;
+    result.viewCovariances = found.viewCovariances;
+    result.used = found.inliers[0];
+    deviations = found.pointDeviations;
     for (size_t c = 1; c < Rs.size(); c++)
         fit.rig.extrinsics[c] = {Rs[c], Ts[c]};
     result.rvecs = vectorsOf(rvecs);

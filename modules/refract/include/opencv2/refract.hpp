@@ -166,7 +166,7 @@ enum GlassCalibrationFlags {
     GLASS_SHARED_WINDOW = 64,       //!< both cameras look through one pane (stereoCalibrateGlass only)
     GLASS_FIX_PRINCIPAL_POINT = 128,    //!< with GLASS_FREE_INTRINSICS: cx and cy stay
     GLASS_ROBUST = 256,             //!< reject outliers, points and images; without: maximum likelihood of all points
-    GLASS_USE_POSES = 512,          //!< the views' poses are known (long forms of rigs and bundles only)
+    GLASS_USE_POSES = 512,          //!< the views' poses are known (long forms of calibrateGlassRig and refractiveBundleAdjust)
     GLASS_FIX_FOCAL_LENGTH = 1024,  //!< fx and fy stay
     GLASS_FIX_K1 = 2048,            //!< k1 stays; the other GLASS_FIX_K alike (a fisheye lens has k1 to k4)
     GLASS_FIX_K2 = 4096,
@@ -186,7 +186,7 @@ enum GlassCalibrationFlags {
     GLASS_FREE_CURVATURE = 67108864     //!< curvature of a pane; a flat window becomes a bent one, starting at 0
 };
 
-//! How calibrateGlassRig used one image
+//! How calibrateGlassRig or stereoCalibrateGlass used one image
 enum GlassImageStatus {
     GLASS_IMAGE_USED = 0,           //!< used, except the points that inliers marks 0
     GLASS_IMAGE_ABSENT = 1,         //!< not taken, or no point seen
@@ -1263,6 +1263,71 @@ CV_EXPORTS_AS(calibrateGlassExtended) double calibrateGlass(InputArrayOfArrays o
         int flags = 0,
         TermCriteria criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 1000, 1e-12));
 
+/** @brief What stereoCalibrateGlass and the long form of calibrateGlassRig take beside images, cameras and poses. What is not
+set is as its text says of empty. A copy shares its matrices, as Mat does; no call changes them. */
+struct CV_EXPORTS_W_SIMPLE GlassRigOptions
+{
+    CV_WRAP explicit GlassRigOptions(int flags = 0);
+
+    CV_PROP_RW int flags;                   //!< see GlassCalibrationFlags
+    CV_PROP_RW TermCriteria criteria;       //!< iterations and relative change of the cost at which to stop: 1000 and 1e-12
+    /** With GLASS_USE_POSES: one 6x6 covariance (see the conventions) of (rvec, tvec) per view, an empty one for a pose that is
+    exact. Empty: all are exact. Without the flag they must be empty, so also for stereoCalibrateGlass. */
+    CV_PROP_RW std::vector<Mat> poseCovariances;
+    /** Prior knowledge of each camera, from an earlier calibration or a data sheet: an LxL covariance (see the conventions) of
+    its L lens parameters, or a PxP one of its P parameters in the order of stdDeviations; an empty one, or none at all: nothing
+    is known. A parameter with a variance is estimated with this prior, whose mean is the initial value. A lens parameter with
+    the variance 0 is exact, with any flags. With NaN the flags decide, also for window parameters without a variance. Of a
+    normal what is along it does not count: sigma^2 times the identity is sigma radians about any axis. It may be (P+6)x(P+6),
+    of the camera's parameters, then of its rvec and T (rows and columns of camera 1: not used). With a variance they are
+    estimated, with this prior; with the variance 0 exact, with any flags. An emitter of which only one coordinate is known
+    needs this: of a straight sheet of light the images determine the plane, three of the six. Of a window that cameras share,
+    the rows of its first camera count. */
+    CV_PROP_RW std::vector<Mat> cameraCovariances;
+    /** Prior knowledge of systematic errors that the targets of all views share, a 7x7 covariance (see the conventions):
+    relative error of their scale (1; the square of a printed board), then rotation vector and translation (6) of the rigid
+    motion by which all targets, or the mount of all cameras, moved between the direct and the refracted images, in the frame of
+    camera 1. (A rotation about a point c adds [c]x times its rotation vector to the translation.) A variance of 0: there is no
+    such error; NaN: it may be of any size. These errors are estimated within the prior, so that all uncertainties contain them:
+    in air a common motion of the targets resembles a tilt of the window. Empty: there are none. */
+    CV_PROP_RW Mat targetCovariance;
+    /** Per camera, per view, as imagePointsDirect: the covariance of each pixel (see the conventions; the pixels' variance, in
+    units of which they are, is estimated). An empty array, list or whole: usual pixels. */
+    CV_PROP_RW std::vector<std::vector<Mat> > pixelCovariancesDirect;
+    CV_PROP_RW std::vector<std::vector<Mat> > pixelCovariancesRefracted; //!< as pixelCovariancesDirect
+    //! Whether stdDeviations and covariance are wanted: true; they take time. If not, they are empty.
+    CV_PROP_RW bool computeCovariance;
+};
+
+//! What stereoCalibrateGlass and the long form of calibrateGlassRig find beside cameras, places and poses.
+struct CV_EXPORTS_W_SIMPLE GlassRigResult
+{
+    CV_WRAP GlassRigResult();
+
+    //! RMS reprojection error in pixels over all points that were used (of half a pixel: of its known coordinate; no weights)
+    CV_PROP_RW double rms;
+    CV_PROP_RW double pixelStd;             //!< estimated standard deviation of one coordinate of a usual pixel
+    CV_PROP_RW int degreesOfFreedom;        //!< equations, those of prior knowledge too, less unknowns: what tells pixelStd
+    //! Px1 CV_64F: parameters of each camera (as calibrateGlass), then rvec (3) and T (3) of each but the first.
+    CV_PROP_RW Mat stdDeviations;
+    /** PxP in the same order, scaled by the residuals. With a targetCovariance both have seven more rows at their end (and this
+    as many columns), which other calls do not take: give these the part before. */
+    CV_PROP_RW Mat covariance;
+    //! Vx2C CV_64F: RMS of each image: direct and refracted of camera 1, of camera 2, ...; NaN: no image, or it was rejected.
+    CV_PROP_RW Mat perViewErrors;
+    CV_PROP_RW Mat imageStatus;             //!< Vx2C CV_8U in the same order, see GlassImageStatus
+    /** V*2C masks Nx1 CV_8U in the same order, row by row: 0 where a point was not seen or was rejected; empty where there is
+    no image. */
+    CV_PROP_RW std::vector<Mat> inliers;
+    /** Cx5 CV_64F: for a window that is estimated only from images through it: the normal (3) of the second best minimum, the
+    root of the difference of its squared errors from the best, in standard deviations of a pixel, and its distance. If the root
+    is below about 3, the data do not distinguish both minima: add a pair, or other tilts. NaN if no other minimum was found.
+    The row, and the frame of the normal, are those of the first camera of the window. Of a dome or tube: its centre and radius.
+    */
+    CV_PROP_RW Mat otherMinima;
+    CV_PROP_RW Mat targetErrors;            //!< 7x1 CV_64F: the estimates; NaN without a targetCovariance
+};
+
 /** @brief calibrateGlass for a rigid pair of cameras: all images of a view share one board pose.
 
 @param objectPoints one array of N_i 3-D points per view.
@@ -1272,28 +1337,23 @@ CV_EXPORTS_AS(calibrateGlassExtended) double calibrateGlass(InputArrayOfArrays o
 @param imagePointsRefracted2 per view, camera 2 through its window.
 @param camera1 initial value and result.
 @param camera2 initial value and result.
-@param R 3x3 or rotation vector, camera 1 -> camera 2; result with GLASS_FREE_EXTRINSICS, 3x3 CV_64F (a Vec3d stays a rotation
-vector).
+@param R 3x3 or rotation vector, camera 1 -> camera 2; result with GLASS_FREE_EXTRINSICS, or where cameraCovariances leaves
+them open, 3x3 CV_64F (a Vec3d stays a rotation vector).
 @param T 3x1; result as R.
-@param rvecs object -> camera 1 of each view.
-@param tvecs object -> camera 1 of each view.
-@param stdDeviations Px1: parameters of camera 1, of camera 2 (as calibrateGlass), then rvec (3) and T (3) of camera 2.
-@param covariance PxP in the same order, scaled by the residuals.
-@param perViewErrors Vx4: RMS of each view: direct 1, refracted 1, direct 2, refracted 2; NaN where there is none.
-@param flags see GlassCalibrationFlags. With GLASS_SHARED_WINDOW the window of camera 1 is the initial value, and camera 2's
-normal and distance follow from R and T.
-@param criteria iterations and relative change of the cost at which to stop.
-@return RMS reprojection error in pixels over all observed points.
+@param rvecs object -> camera 1 rotation vector of each view.
+@param tvecs object -> camera 1 translation of each view.
+@param options see GlassRigOptions; without GLASS_USE_POSES. With GLASS_SHARED_WINDOW the window of camera 1 is the initial
+value, and camera 2's normal and distance follow from R and T.
+@return see GlassRigResult.
 
 Throws as calibrateGlass.
 */
-CV_EXPORTS_W double stereoCalibrateGlass(InputArrayOfArrays objectPoints,
+CV_EXPORTS_W GlassRigResult stereoCalibrateGlass(InputArrayOfArrays objectPoints,
         InputArrayOfArrays imagePointsDirect1, InputArrayOfArrays imagePointsRefracted1,
         InputArrayOfArrays imagePointsDirect2, InputArrayOfArrays imagePointsRefracted2,
         const Ptr<RefractiveCamera>& camera1, const Ptr<RefractiveCamera>& camera2,
         InputOutputArray R, InputOutputArray T, OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs,
-        OutputArray stdDeviations, OutputArray covariance, OutputArray perViewErrors, int flags = 0,
-        TermCriteria criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 1000, 1e-12));
+        const GlassRigOptions& options = GlassRigOptions());
 
 /** @brief calibrateGlass for any number of cameras, with separate or shared windows: the general form of calibrateGlass and
 stereoCalibrateGlass.
@@ -1332,100 +1392,19 @@ for a sealed rig with GLASS_FREE_EXTRINSICS.
 @param rvecs object -> camera 1 rotation vector of each view; with GLASS_USE_POSES also input. NaN for a view whose
 observations are all rejected.
 @param tvecs object -> camera 1 translation of each view; as rvecs.
-@param stdDeviations Px1: parameters of each camera (as calibrateGlass), then rvec (3) and T (3) of each but the first.
-@param covariance PxP in the same order, scaled by the residuals.
-@param perViewErrors Vx2C CV_64F: RMS of each image: direct and refracted of camera 1, of camera 2, ...; NaN if there is no
-image or it was rejected.
-@param imageStatus Vx2C CV_8U in the same order, see GlassImageStatus.
-@param inliers V*2C masks Nx1 CV_8U in the same order, row by row: 0 where a point was not seen or was rejected; empty where
-there is no image.
-@param otherMinima Cx5 CV_64F: for a window that is estimated only from images through it: the normal (3) of the second best
-minimum, the root of the difference of its squared errors from the best, in standard deviations of a pixel, and its distance.
-If the root is below about 3, the data do not distinguish both minima: add a pair, or other tilts. NaN if no other minimum was
-found. The row, and the frame of the normal, are those of the first camera of the window. Of a dome or tube: its centre and
-radius.
-@param flags see GlassCalibrationFlags.
-@param poseCovariances with GLASS_USE_POSES: one 6x6 covariance (see the conventions) of (rvec, tvec) per view, an empty one
-for a pose that is exact; noArray(): all are exact.
-@param criteria iterations and relative change of the cost at which to stop.
-@param cameraCovariances prior knowledge of each camera, from an earlier calibration or a data sheet: an LxL covariance (see
-the conventions) of its L lens parameters, or a PxP one of its P parameters in the order of stdDeviations; empty: none. A
-parameter with a variance is estimated with this prior, whose mean is the initial value. A lens parameter with the variance 0
-is exact, with any flags. With NaN the flags decide, also for window parameters without a variance. Of a normal what is along
-it does not count: sigma^2 times the identity is sigma radians about any axis. noArray(): none. It may be (P+6)x(P+6), of the
-camera's parameters, then of its rvec and T (rows and columns of camera 1: not used). With a variance they are estimated, with
-this prior; with the variance 0 exact, with any flags. An emitter of which only one coordinate is known needs this: of a
-straight sheet of light the images determine the plane, three of the six.
-@param pixelCovariancesDirect per camera, per view, as imagePointsDirect: the covariance of each pixel (see the conventions; the
-pixels' variance, in units of which they are, is estimated). An empty array, list or whole: usual pixels.
-@param pixelCovariancesRefracted as pixelCovariancesDirect.
-@return RMS reprojection error in pixels over all points that were used (of half a pixel: of its known coordinate; without
-weights).
+@param options see GlassRigOptions.
+@return see GlassRigResult.
 
 A camera without a window (no layer, equal media) may be part of the rig if other windows refract.
 
 Throws as calibrateGlass, also without Ceres, and with GLASS_ROBUST if fewer than half of all points are inliers.
 */
-CV_EXPORTS_AS(calibrateGlassRigExtended) double calibrateGlassRig(InputArrayOfArrays objectPoints,
+CV_EXPORTS_AS(calibrateGlassRigExtended) GlassRigResult calibrateGlassRig(InputArrayOfArrays objectPoints,
         const std::vector<std::vector<Mat> >& imagePointsDirect,
         const std::vector<std::vector<Mat> >& imagePointsRefracted,
         const std::vector<Ptr<RefractiveCamera> >& cameras, const std::vector<int>& windowOfCamera,
         InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts,
-        InputOutputArrayOfArrays rvecs, InputOutputArrayOfArrays tvecs,
-        OutputArray stdDeviations, OutputArray covariance, OutputArray perViewErrors,
-        OutputArray imageStatus, OutputArrayOfArrays inliers, OutputArray otherMinima,
-        int flags = 0, InputArrayOfArrays poseCovariances = noArray(),
-        TermCriteria criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 1000, 1e-12),
-        InputArrayOfArrays cameraCovariances = noArray(),
-        const std::vector<std::vector<Mat> >& pixelCovariancesDirect = std::vector<std::vector<Mat> >(),
-        const std::vector<std::vector<Mat> >& pixelCovariancesRefracted = std::vector<std::vector<Mat> >());
-
-/** @overload
-With systematic errors of the targets.
-@param objectPoints as above.
-@param imagePointsDirect as above.
-@param imagePointsRefracted as above.
-@param cameras as above.
-@param windowOfCamera as above.
-@param Rs as above.
-@param Ts as above.
-@param rvecs as above.
-@param tvecs as above.
-@param stdDeviations as above.
-@param covariance as above.
-@param perViewErrors as above.
-@param imageStatus as above.
-@param inliers as above.
-@param otherMinima as above.
-@param targetCovariance prior knowledge of systematic errors that the targets of all views share, a 7x7 covariance (see the
-conventions): relative error of their scale (1; the square of a printed board), then rotation vector and translation (6) of the
-rigid motion by which all targets, or the mount of all cameras, moved between the direct and the refracted images, in the frame
-of camera 1. (A rotation about a point c adds [c]x times its rotation vector to the translation.) A variance of 0: there is no
-such error; NaN: it may be of any size. These errors are estimated within the prior, so that all uncertainties contain them: in
-air a common motion of the targets resembles a tilt of the window. Empty: there are none. With it, stdDeviations and covariance
-have seven more rows at their end (and covariance as many columns), which other calls do not take: give these the part before.
-@param targetErrors 7x1 CV_64F: the estimates; NaN without targetCovariance.
-@param flags as above.
-@param poseCovariances as above.
-@param criteria as above.
-@param cameraCovariances as above.
-@param pixelCovariancesDirect as above.
-@param pixelCovariancesRefracted as above.
-@return as above.
-*/
-CV_EXPORTS_AS(calibrateGlassRigTargets) double calibrateGlassRig(InputArrayOfArrays objectPoints,
-        const std::vector<std::vector<Mat> >& imagePointsDirect,
-        const std::vector<std::vector<Mat> >& imagePointsRefracted,
-        const std::vector<Ptr<RefractiveCamera> >& cameras, const std::vector<int>& windowOfCamera,
-        InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts,
-        InputOutputArrayOfArrays rvecs, InputOutputArrayOfArrays tvecs,
-        OutputArray stdDeviations, OutputArray covariance, OutputArray perViewErrors,
-        OutputArray imageStatus, OutputArrayOfArrays inliers, OutputArray otherMinima,
-        InputArray targetCovariance, OutputArray targetErrors, int flags = 0, InputArrayOfArrays poseCovariances = noArray(),
-        TermCriteria criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 1000, 1e-12),
-        InputArrayOfArrays cameraCovariances = noArray(),
-        const std::vector<std::vector<Mat> >& pixelCovariancesDirect = std::vector<std::vector<Mat> >(),
-        const std::vector<std::vector<Mat> >& pixelCovariancesRefracted = std::vector<std::vector<Mat> >());
+        InputOutputArrayOfArrays rvecs, InputOutputArrayOfArrays tvecs, const GlassRigOptions& options);
 
 /** @overload
 The short form: the results are lenses and windows in cameras and (with GLASS_FREE_EXTRINSICS) Rs and Ts.
@@ -1459,9 +1438,9 @@ Result: the lens that is chosen; its other coefficients are 0. The windows stay 
 @param windowOfCamera as calibrateGlassRig.
 @param Rs as calibrateGlassRig, initial value; may be empty as there.
 @param Ts as Rs.
-@param flags as calibrateGlassRig, without GLASS_USE_POSES; GLASS_FREE_INTRINSICS is always set. With GLASS_ROBUST points are
-left out that are more than 5 standard deviations from the fit of the richest candidate. Known poses and prior knowledge are
-not used.
+@param flags see GlassCalibrationFlags, without GLASS_USE_POSES; GLASS_FREE_INTRINSICS is always set. With GLASS_ROBUST points
+are left out that are more than 5 standard deviations from the fit of the richest candidate. Known poses and prior knowledge
+are not used.
 @param scores Nx4 CV_64F, one row per candidate: its flags (GLASS_FIX_...), its number of coefficients, its held-out RMS error
 in pixels, and the standard error of the difference of this error from the best; NaN: it cannot be fitted, or predicts no part.
 @return the flags (GLASS_FIX_...) of the chosen candidate, to be added to those of the calibration. Throws as calibrateGlassRig
@@ -1484,7 +1463,7 @@ With what the images leave open of the coefficients that are left out: these are
 @param Ts as above.
 @param flags as above.
 @param scores as above.
-@param lensCovariances per camera, LxL CV_64F, for cameraCovariances of calibrateGlassRig, with the flags of the choice: a prior
+@param lensCovariances per camera, LxL CV_64F, for cameraCovariances of GlassRigOptions, with the flags of the choice: a prior
 of mean 0 for coefficients that are left out (up to OpenCV's five, or the next one), NaN for all others; 0 for what neither
 the images nor the corners of an image show. Those along the radius (k) have one standard deviation in pixels at the image's
 corner, the tangential ones (p) another: the largest within half a unit of log likelihood of the likeliest (evidence,
@@ -1496,6 +1475,58 @@ CV_EXPORTS_AS(selectLensCoefficientsExtended) int selectLensCoefficients(InputAr
         const std::vector<std::vector<Mat> >& imagePointsRefracted,
         const std::vector<Ptr<RefractiveCamera> >& cameras, const std::vector<int>& windowOfCamera,
         InputArrayOfArrays Rs, InputArrayOfArrays Ts, int flags, OutputArray scores, OutputArrayOfArrays lensCovariances);
+
+/** @brief What the long forms of refractiveBundleAdjust take beside pixels, cameras, poses, points and lengths. What is not set
+is as its text says of empty. A copy shares its matrices, as Mat does; no call changes them. */
+struct CV_EXPORTS_W_SIMPLE BundleAdjustOptions
+{
+    CV_WRAP explicit BundleAdjustOptions(int flags = 0);
+
+    CV_PROP_RW int flags;                   //!< see GlassCalibrationFlags
+    CV_PROP_RW TermCriteria criteria;       //!< iterations and relative change of the cost at which to stop: 1000 and 1e-12
+    CV_PROP_RW std::vector<Mat> poseCovariances; //!< with GLASS_USE_POSES, as GlassRigOptions
+    CV_PROP_RW std::vector<Mat> cameraCovariances; //!< as GlassRigOptions, also of rvec and T
+    /** Prior knowledge of all cameras together, in place of cameraCovariances (both throw): PxP (see the conventions), in the
+    order of stdDeviations, the covariance of the initial values of cameras, Rs and Ts, for example of an earlier calibration,
+    as readRig returns it. What has a variance is estimated within it, whatever the flags say; for the rest the flags decide. Of
+    a window that cameras share, the rows of its first camera count. */
+    CV_PROP_RW Mat rigCovariance;
+    //! Of each pixel (see the conventions): per camera, per view, as imagePoints; of a list one array, {{array}}.
+    CV_PROP_RW std::vector<std::vector<Mat> > pixelCovariances;
+    /** Relative standard deviation of an error that all lengths share: one wand has the same wrong length at all times, and
+    more times do not average that. It is estimated within it, and is in all uncertainties. 0: the errors of lengths are
+    independent. NaN: not known, so that lengths tell proportions, but no scale. Negative or infinite throws. */
+    CV_PROP_RW double lengthScaleStd;
+    CV_PROP_RW bool computePointDeviations; //!< whether pointDeviations are wanted: true; they take time, and are empty if not
+    CV_PROP_RW bool computeViewCovariances; //!< whether viewCovariances are wanted: true; they take time, and are empty if not
+    /** Bytes that viewCovariances and pointDeviations may take while they are found, beside what the fit itself takes: the
+    inverse of the views' equations, and how each point depends on views and cameras. Above it viewCovariances are NaN, and
+    pointDeviations are those of points in known cameras and views, which are too small. 0: any. stdDeviations and covariance
+    are always of all. Negative or NaN throws. */
+    CV_PROP_RW double covarianceMemory;
+};
+
+//! What the long forms of refractiveBundleAdjust find beside cameras, places, poses and points.
+struct CV_EXPORTS_W_SIMPLE BundleAdjustResult
+{
+    CV_WRAP BundleAdjustResult();
+
+    CV_PROP_RW double rms;                  //!< RMS reprojection error in pixels over all points that were used
+    CV_PROP_RW double pixelStd;             //!< estimated standard deviation of one coordinate of a usual pixel
+    CV_PROP_RW int degreesOfFreedom;        //!< equations, those of lengths and prior knowledge too, less unknowns
+    //! Px1 CV_64F: parameters of each camera (as calibrateGlass), then rvec (3) and T (3) of each but the first.
+    CV_PROP_RW Mat stdDeviations;
+    CV_PROP_RW Mat covariance;              //!< PxP in the same order; poses and points unknown; scaled by the residuals
+    //! Mx3 CV_64F: one standard deviation of x, y, z of each point, with that of cameras and poses; NaN where the point is NaN.
+    CV_PROP_RW Mat pointDeviations;
+    /** One 6x6 CV_64F covariance of (rvec, tvec) per view, including the uncertainty of cameras and points; 0 where a pose is
+    exact, NaN where the view has no observation in use. */
+    CV_PROP_RW std::vector<Mat> viewCovariances;
+    CV_PROP_RW Mat perViewErrors;           //!< VxC CV_64F: RMS of each image; NaN where there is none
+    /** V*C masks Mx1 CV_8U, row by row: 0 where a point was not seen or was rejected; empty where there is no image. Of a list
+    of observations one mask Nx1. */
+    CV_PROP_RW std::vector<Mat> inliers;
+};
 
 /** @brief Bundle adjustment without a target: estimates cameras, their windows, poses and scene points from matches, with the
 scale of known lengths.
@@ -1528,43 +1559,20 @@ triangulated from its rays. The result is NaN for a point of which fewer than th
 GLASS_ROBUST: by inliers), whose rays do not meet, or that may as well be elsewhere, as half pixels and lengths leave some.
 @param lengths Lx4 CV_64F (or std::vector<Vec4d>): index of a point, index of another, their distance, its standard
 deviation > 0 (NaN: not known, so that it tells nothing); noArray(): none.
-@param stdDeviations Px1 CV_64F: parameters of each camera (as calibrateGlass), then rvec (3) and T (3) of each but the first.
-@param covariance PxP in the same order; poses and points unknown; the pixels' variance is that of the residuals.
-@param pointDeviations Mx3 CV_64F: one standard deviation of x, y, z of each point, including the uncertainty of cameras and
-poses; NaN where the point is NaN.
-@param perViewErrors VxC CV_64F: RMS of each image; NaN where there is none.
-@param inliers V*C masks Mx1 CV_8U, row by row: 0 where a point was not seen or was rejected; empty where there is no image.
-@param flags see GlassCalibrationFlags; 0: the normals, poses and points are free. With GLASS_FIX_NORMAL alone only poses and
-points are estimated, with cameras as given, also without windows. With GLASS_ROBUST outliers are rejected: a fit with Cauchy's
-loss, then a decision for each observation; an inlier is to be rejected with 1e-4 (4e-4 were, of matches with 10 % outliers).
-@param poseCovariances with GLASS_USE_POSES: one 6x6 covariance (see the conventions) of (rvec, tvec) per view, an empty one
-for a pose that is exact; noArray(): all are exact.
-@param criteria iterations and relative change of the cost at which to stop, as in calibrateGlass.
-@param cameraCovariances prior knowledge of each camera, as for calibrateGlassRig, also of its rvec and T; noArray(): none.
-@param pixelCovariances per camera, per view, as imagePoints: the covariance of each pixel, as for calibrateGlassRig.
-@param rigCovariance prior knowledge of all cameras together, in place of cameraCovariances: PxP (see the conventions), in the
-order of stdDeviations, the covariance of the initial values of cameras, Rs and Ts, for example of an earlier calibration, as
-readRig returns it. What has a variance is estimated within it, whatever the flags say; for the rest the flags decide. Of a
-window that cameras share, the rows of its first camera count. noArray(): nothing is known.
-@param lengthScaleStd relative standard deviation of an error that all lengths share: one wand has the same wrong length at all
-times, and more times do not average that. It is estimated within it, and is in all uncertainties. 0: the errors of lengths are
-independent. NaN: not known, so that lengths tell proportions, but no scale.
-@return RMS reprojection error in pixels over all points that were used.
+@param options see BundleAdjustOptions; without flags the normals, poses and points are free. With GLASS_FIX_NORMAL alone only
+poses and points are estimated, with cameras as given, also without windows. With GLASS_ROBUST outliers are rejected: a fit with
+Cauchy's loss, then a decision for each observation; an inlier is to be rejected with 1e-4 (4e-4 were, of matches with 10 %
+outliers).
+@return see BundleAdjustResult.
 
 Throws if the data do not determine a free parameter, with its name; throws Error::StsNotImplemented in a build without Ceres.
 */
-CV_EXPORTS_AS(refractiveBundleAdjustExtended) double refractiveBundleAdjust(
+CV_EXPORTS_AS(refractiveBundleAdjustExtended) BundleAdjustResult refractiveBundleAdjust(
         const std::vector<std::vector<Mat> >& imagePoints,
         const std::vector<Ptr<RefractiveCamera> >& cameras, const std::vector<int>& windowOfCamera,
         InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts,
         InputOutputArrayOfArrays rvecs, InputOutputArrayOfArrays tvecs,
-        InputOutputArray points3D, InputArray lengths,
-        OutputArray stdDeviations, OutputArray covariance, OutputArray pointDeviations, OutputArray perViewErrors,
-        OutputArrayOfArrays inliers, int flags = 0, InputArrayOfArrays poseCovariances = noArray(),
-        TermCriteria criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 1000, 1e-12),
-        InputArrayOfArrays cameraCovariances = noArray(),
-        const std::vector<std::vector<Mat> >& pixelCovariances = std::vector<std::vector<Mat> >(),
-        InputArray rigCovariance = noArray(), double lengthScaleStd = 0);
+        InputOutputArray points3D, InputArray lengths, const BundleAdjustOptions& options);
 
 /** @overload
 The form for many views (hundreds to thousands of images of a large scene), each of which sees few of the points: a list of
@@ -1582,37 +1590,15 @@ Two rows may be of the same point in the same image: they are two observations.
 @param tvecs as rvecs.
 @param points3D as above.
 @param lengths as above.
-@param stdDeviations as above.
-@param covariance as above.
-@param viewCovariances one 6x6 CV_64F covariance of (rvec, tvec) per view, including the uncertainty of cameras and points; 0
-where a pose is exact, NaN where the view has no observation in use.
-@param pointDeviations as above.
-@param perViewErrors as above.
-@param inliers Nx1 CV_8U, one for each row of observations: 0 where the point was not seen or was rejected.
-@param flags as above.
-@param poseCovariances as above.
-@param criteria as above.
-@param cameraCovariances as above.
-@param pixelCovariances the covariance of each pixel of the list, see the conventions; noArray(): all are usual ones.
-@param rigCovariance as above.
-@param lengthScaleStd as above.
-@param covarianceMemory bytes that viewCovariances and pointDeviations may take while they are found, beside what the fit itself
-takes: the inverse of the views' equations, and how each point depends on views and cameras. Above it viewCovariances are NaN,
-and pointDeviations are those of points in known cameras and views, which are too small. 0: any. stdDeviations and covariance
-are always of all.
-@return RMS reprojection error in pixels over all points that were used.
+@param options as above.
+@return see BundleAdjustResult.
 */
-CV_EXPORTS_AS(refractiveBundleAdjustSparse) double refractiveBundleAdjust(
+CV_EXPORTS_AS(refractiveBundleAdjustSparse) BundleAdjustResult refractiveBundleAdjust(
         InputArray observations, InputArray imagePoints,
         const std::vector<Ptr<RefractiveCamera> >& cameras, const std::vector<int>& windowOfCamera,
         InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts,
         InputOutputArrayOfArrays rvecs, InputOutputArrayOfArrays tvecs,
-        InputOutputArray points3D, InputArray lengths,
-        OutputArray stdDeviations, OutputArray covariance, OutputArrayOfArrays viewCovariances, OutputArray pointDeviations,
-        OutputArray perViewErrors, OutputArray inliers, int flags = 0, InputArrayOfArrays poseCovariances = noArray(),
-        TermCriteria criteria = TermCriteria(TermCriteria::COUNT + TermCriteria::EPS, 1000, 1e-12),
-        InputArrayOfArrays cameraCovariances = noArray(), InputArray pixelCovariances = noArray(),
-        InputArray rigCovariance = noArray(), double lengthScaleStd = 0, double covarianceMemory = 0);
+        InputOutputArray points3D, InputArray lengths, const BundleAdjustOptions& options);
 
 /** @overload
 The short form, for a rig that does not move (a moving wand, drifting particles). Cameras, windows, Rs and Ts are initial
@@ -1624,8 +1610,8 @@ values and results; flags say which are estimated.
 @param Ts as above.
 @param points3D as above, in the frame of camera 1.
 @param lengths as above; at least one is needed if no pose is given.
-@param flags as above.
-@param criteria as above.
+@param flags see GlassCalibrationFlags, without GLASS_USE_POSES; 0 as for options.
+@param criteria as BundleAdjustOptions.
 @return RMS reprojection error in pixels.
 */
 CV_EXPORTS_W double refractiveBundleAdjust(InputArrayOfArrays imagePoints,

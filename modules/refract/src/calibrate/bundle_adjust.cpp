@@ -64,7 +64,7 @@ void holdFrame(int first, BundleTask& task)
 }
 
 //! One view stands where it is; more need a start.
-void readViewPoses(InputArrayOfArrays rvecs, InputArrayOfArrays tvecs, InputArrayOfArrays covariances, int count,
+void readViewPoses(InputArrayOfArrays rvecs, InputArrayOfArrays tvecs, const std::vector<Mat>& covariances, int count,
                    BundleTask& task)
 {
     const bool isGiven = count > 1 || !rvecs.empty() || !tvecs.empty();
@@ -92,9 +92,8 @@ void readViewPoses(InputArrayOfArrays rvecs, InputArrayOfArrays tvecs, InputArra
 }
 
 //! PxP, in the order of stdDeviations; or nothing.
-Eigen::MatrixXd readRigCovariance(InputArray covariance, const std::vector<Camera>& cameras)
+Eigen::MatrixXd readRigCovariance(const Mat& given, const std::vector<Camera>& cameras)
 {
-    const Mat given = covariance.getMat();
     if (given.empty())
         return Eigen::MatrixXd();
     int count = 6*((int)cameras.size() - 1);
@@ -149,21 +148,6 @@ void checkScale(const Rig& rig, BundleTask& task)
                            "poses of several views (GLASS_USE_POSES)", reason));
 }
 
-//! What is known beside the pixels: of poses, from earlier calibrations, of the ruler of the lengths.
-struct Knowledge
-{
-    InputArrayOfArrays poseCovariances, cameraCovariances;
-    InputArray rigCovariance;
-    double lengthScaleStd;
-};
-
-//! What is asked for that takes its time.
-struct Wanted
-{
-    bool poseCovariances, pointDeviations;
-    double memory;              //!< bytes that both may take; 0: any
-};
-
 void writePoints(const std::vector<Point3d>& points, int depth, OutputArray out)
 {
     PointWriter writer(out, (int)points.size(), 3, depth);
@@ -186,9 +170,10 @@ void writePoints(const std::vector<Point3d>& points, int depth, OutputArray out)
 //! What all forms do.
 BundleFit adjust(const BundleImages& images, const std::vector<Point3d>& points, const std::vector<Ptr<RefractiveCamera> >& cameras,
                  const std::vector<int>& windowOfCamera, InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts,
-                 InputArrayOfArrays rvecs, InputArrayOfArrays tvecs, InputOutputArray points3D, InputArray lengths, int flags,
-                 TermCriteria criteria, const Knowledge& known, const Wanted& wanted)
+                 InputArrayOfArrays rvecs, InputArrayOfArrays tvecs, InputOutputArray points3D, InputArray lengths,
+                 const BundleAdjustOptions& options)
 {
+    const int flags = options.flags;
     const int count = (int)cameras.size();
     checkCount(windowOfCamera.size(), count, "windowOfCamera", true);
     std::vector<String> names, ofImages;
@@ -200,29 +185,32 @@ BundleFit adjust(const BundleImages& images, const std::vector<Point3d>& points,
     BundleTask task;
     task.images = images;
     task.flags = flags;
-    task.criteria = criteria;
-    task.wantsPoseCovariances = wanted.poseCovariances;
-    task.wantsPointDeviations = wanted.pointDeviations;
-    task.covarianceMemory = wanted.memory;
+    task.criteria = options.criteria;
+    task.wantsPoseCovariances = options.computeViewCovariances;
+    task.wantsPointDeviations = options.computePointDeviations;
+    if (!(options.covarianceMemory >= 0))
+        CV_Error_(Error::StsBadArg, ("covarianceMemory is %g; it must not be negative", options.covarianceMemory));
+    task.covarianceMemory = options.covarianceMemory;
     task.points = points;
     const int depth = task.points.empty() ? CV_64F : points3D.depth();
     task.points.resize(images.points, Point3d(NaN, NaN, NaN));
     task.lengths = readLengths(lengths, images.points);
-    readViewPoses(rvecs, tvecs, known.poseCovariances, images.views, task);
+    checkPoseCovariances(options.poseCovariances, flags);
+    readViewPoses(rvecs, tvecs, options.poseCovariances, images.views, task);
 
     Rig rig;
     rig.cameras = camerasOf(cameras, names);
     addParameters(rig.cameras, flags);
     rig.extrinsics = readExtrinsicPoses(Rs, Ts, count);
     setOwners(rig, windowOfCamera);
-    if (!known.rigCovariance.empty() && !known.cameraCovariances.empty())
+    if (!options.rigCovariance.empty() && !options.cameraCovariances.empty())
         CV_Error(Error::StsBadArg, "cameraCovariances and rigCovariance are both given; give one: rigCovariance is of all cameras");
-    task.rigCovariance = readRigCovariance(known.rigCovariance, rig.cameras);
-    if (known.lengthScaleStd < 0 || std::isinf(known.lengthScaleStd))
+    task.rigCovariance = readRigCovariance(options.rigCovariance, rig.cameras);
+    if (options.lengthScaleStd < 0 || std::isinf(options.lengthScaleStd))
         CV_Error_(Error::StsBadArg, ("lengthScaleStd is %g; it must be finite and not negative, or NaN: not known",
-                                     known.lengthScaleStd));
-    task.lengthScaleSigma = task.lengths.empty() ? 0 : known.lengthScaleStd;
-    task.cameraPriors = readCameraPriors(known.cameraCovariances, rig.cameras);
+                                     options.lengthScaleStd));
+    task.lengthScaleSigma = task.lengths.empty() ? 0 : options.lengthScaleStd;
+    task.cameraPriors = readCameraPriors(options.cameraCovariances, rig.cameras);
     checkScale(rig, task);
     checkWindows(rig, images.seeingCameras(), flags, ofImages);
 
@@ -237,60 +225,70 @@ BundleFit adjust(const BundleImages& images, const std::vector<Point3d>& points,
 
 const int BUNDLE_FLAGS = MONO_FLAGS | GLASS_FREE_EXTRINSICS | GLASS_FIX_NORMAL;
 
+//! Of a list of observations: one array.
+Mat listedCovariances(const std::vector<std::vector<Mat> >& given)
+{
+    if (given.empty() || (given.size() == 1 && given[0].empty()))
+        return Mat();
+    if (given.size() != 1 || given[0].size() != 1)
+        CV_Error_(Error::StsBadSize, ("pixelCovariances is %d lists, the first of %d arrays; of a list of observations it must be one "
+                                      "list of one array, or empty", (int)given.size(), (int)given[0].size()));
+    return given[0][0];
+}
+
+BundleAdjustResult resultOf(const BundleFit& fit, const std::vector<Mat>& inliers)
+{
+    BundleAdjustResult result;
+    result.rms = fit.rms;
+    result.pixelStd = fit.sigma;
+    result.degreesOfFreedom = fit.freedom;
+    result.stdDeviations = fit.stdDeviations;
+    result.covariance = fit.covariance;
+    result.pointDeviations = fit.pointDeviations;
+    result.viewCovariances = fit.poseCovariances;
+    result.perViewErrors = fit.perViewErrors;
+    result.inliers = inliers;
+    return result;
+}
+
 } // namespace
 
-double refractiveBundleAdjust(const std::vector<std::vector<Mat> >& imagePoints,
-                              const std::vector<Ptr<RefractiveCamera> >& cameras, const std::vector<int>& windowOfCamera,
-                              InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts, InputOutputArrayOfArrays rvecs,
-                              InputOutputArrayOfArrays tvecs, InputOutputArray points3D, InputArray lengths,
-                              OutputArray stdDeviations, OutputArray covariance, OutputArray pointDeviations,
-                              OutputArray perViewErrors, OutputArrayOfArrays inliers, int flags,
-                              InputArrayOfArrays poseCovariances, TermCriteria criteria, InputArrayOfArrays cameraCovariances,
-                              const std::vector<std::vector<Mat> >& pixelCovariances, InputArray rigCovariance,
-                              double lengthScaleStd)
+BundleAdjustResult refractiveBundleAdjust(const std::vector<std::vector<Mat> >& imagePoints,
+                                          const std::vector<Ptr<RefractiveCamera> >& cameras,
+                                          const std::vector<int>& windowOfCamera, InputOutputArrayOfArrays Rs,
+                                          InputOutputArrayOfArrays Ts, InputOutputArrayOfArrays rvecs,
+                                          InputOutputArrayOfArrays tvecs, InputOutputArray points3D, InputArray lengths,
+                                          const BundleAdjustOptions& options)
 {
     CV_INSTRUMENT_REGION();
 
-    checkFlags(flags, BUNDLE_FLAGS | GLASS_USE_POSES);
+    checkFlags(options.flags, BUNDLE_FLAGS | GLASS_USE_POSES);
     std::vector<PixelViews> pixels;
     for (size_t c = 0; c < imagePoints.size(); c++)
         pixels.push_back(readPixelViews(imagePoints[c], numbered("imagePoints", (int)c).c_str(), HalfPixels::TAKEN));
     const std::vector<Point3d> points = readPoints3(points3D, "points3D");
-    const BundleImages images = denseImages(pixels, (int)cameras.size(), (int)points.size(), pixelCovariances);
-    const BundleFit fit = adjust(images, points, cameras, windowOfCamera, Rs, Ts, rvecs, tvecs, points3D, lengths, flags, criteria,
-                                 { poseCovariances, cameraCovariances, rigCovariance, lengthScaleStd },
-                                 { false, pointDeviations.needed(), 0. });
-    writeFit(fit, rvecs, tvecs, stdDeviations, covariance, perViewErrors);
-    writeMat(fit.pointDeviations, pointDeviations);
-    writeMasks(denseMasks(images, fit.isUsed), inliers);
-    return fit.rms;
+    const BundleImages images = denseImages(pixels, (int)cameras.size(), (int)points.size(), options.pixelCovariances);
+    const BundleFit fit = adjust(images, points, cameras, windowOfCamera, Rs, Ts, rvecs, tvecs, points3D, lengths, options);
+    writePoses(fit.poses, rvecs, tvecs);
+    return resultOf(fit, denseMasks(images, fit.isUsed));
 }
 
-double refractiveBundleAdjust(InputArray observations, InputArray imagePoints, const std::vector<Ptr<RefractiveCamera> >& cameras,
-                              const std::vector<int>& windowOfCamera, InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts,
-                              InputOutputArrayOfArrays rvecs, InputOutputArrayOfArrays tvecs, InputOutputArray points3D,
-                              InputArray lengths, OutputArray stdDeviations, OutputArray covariance,
-                              OutputArrayOfArrays viewCovariances, OutputArray pointDeviations, OutputArray perViewErrors,
-                              OutputArray inliers, int flags, InputArrayOfArrays poseCovariances, TermCriteria criteria,
-                              InputArrayOfArrays cameraCovariances, InputArray pixelCovariances, InputArray rigCovariance,
-                              double lengthScaleStd, double covarianceMemory)
+BundleAdjustResult refractiveBundleAdjust(InputArray observations, InputArray imagePoints,
+                                          const std::vector<Ptr<RefractiveCamera> >& cameras,
+                                          const std::vector<int>& windowOfCamera, InputOutputArrayOfArrays Rs,
+                                          InputOutputArrayOfArrays Ts, InputOutputArrayOfArrays rvecs,
+                                          InputOutputArrayOfArrays tvecs, InputOutputArray points3D, InputArray lengths,
+                                          const BundleAdjustOptions& options)
 {
     CV_INSTRUMENT_REGION();
 
-    checkFlags(flags, BUNDLE_FLAGS | GLASS_USE_POSES);
-    if (!(covarianceMemory >= 0))
-        CV_Error_(Error::StsBadArg, ("covarianceMemory is %g; it must not be negative", covarianceMemory));
+    checkFlags(options.flags, BUNDLE_FLAGS | GLASS_USE_POSES);
     const std::vector<Point3d> points = readPoints3(points3D, "points3D");
     const BundleImages images = listedImages(observations, imagePoints, (int)cameras.size(), countVectors(rvecs, "rvecs"),
-                                             (int)points.size(), pixelCovariances);
-    const BundleFit fit = adjust(images, points, cameras, windowOfCamera, Rs, Ts, rvecs, tvecs, points3D, lengths, flags, criteria,
-                                 { poseCovariances, cameraCovariances, rigCovariance, lengthScaleStd },
-                                 { viewCovariances.needed(), pointDeviations.needed(), covarianceMemory });
-    writeFit(fit, rvecs, tvecs, stdDeviations, covariance, perViewErrors);
-    writeMatrices(fit.poseCovariances, viewCovariances);
-    writeMat(fit.pointDeviations, pointDeviations);
-    writeMat(listedMask(images, fit.isUsed), inliers);
-    return fit.rms;
+                                             (int)points.size(), listedCovariances(options.pixelCovariances));
+    const BundleFit fit = adjust(images, points, cameras, windowOfCamera, Rs, Ts, rvecs, tvecs, points3D, lengths, options);
+    writePoses(fit.poses, rvecs, tvecs);
+    return resultOf(fit, { listedMask(images, fit.isUsed) });
 }
 
 double refractiveBundleAdjust(InputArrayOfArrays imagePoints, const std::vector<Ptr<RefractiveCamera> >& cameras,
@@ -304,9 +302,11 @@ double refractiveBundleAdjust(InputArrayOfArrays imagePoints, const std::vector<
     for (const std::vector<Point2d>& ofCamera : readPixelViews(imagePoints, "imagePoints", HalfPixels::TAKEN))
         pixels.push_back(PixelViews(1, ofCamera));
     const std::vector<Point3d> points = readPoints3(points3D, "points3D");
+    BundleAdjustOptions options(flags);
+    options.criteria = criteria;
+    options.computePointDeviations = options.computeViewCovariances = false;
     const BundleImages images = denseImages(pixels, (int)cameras.size(), (int)points.size(), {});
-    return adjust(images, points, cameras, windowOfCamera, Rs, Ts, noArray(), noArray(), points3D, lengths, flags, criteria,
-                  { noArray(), noArray(), noArray(), 0. }, { false, false, 0. }).rms;
+    return adjust(images, points, cameras, windowOfCamera, Rs, Ts, noArray(), noArray(), points3D, lengths, options).rms;
 }
 
 }} // namespace

@@ -77,6 +77,8 @@ FitOutcome fitNear(Rig& rig, const BundleTask& task, BundleFit& fit)
         fit.poseCovariances = covariance.ofPoses();
     if (task.wantsPointDeviations)
         fit.pointDeviations = covariance.ofPoints();
+    fit.sigma = std::sqrt(variance/task.images.variance);   // of a usual pixel
+    fit.freedom = problem.freedom();
     describe(problem, fit);
     rig = problem.rig();
     toNearestCenters(rig, fit);

@@ -124,7 +124,8 @@ BundleImages denseImages(const std::vector<PixelViews>& pixels, int cameras, int
         for (int view = 0; view < all.views; view++)
             median.add(pixels[c][view], known[c].empty() ? PixelCovariances() : known[c][view]);
     }
-    all.images = sceneImages(pixels, known, median());
+    all.variance = median();
+    all.images = sceneImages(pixels, known, all.variance);
     return all;
 }
 
@@ -145,6 +146,7 @@ BundleImages listedImages(InputArray observations, InputArray imagePoints, int c
     all.views = views;
     all.points = points;
     all.listed = count;
+    all.variance = median();
     for (const Listed& o : list)
     {
         all.views = std::max(all.views, o.view + 1);
@@ -164,7 +166,7 @@ BundleImages listedImages(InputArray observations, InputArray imagePoints, int c
             if (!known.empty())
                 ofOwn.push_back(known[order[end]]);
         }
-        SceneImage image = { first.view, first.camera, observed(std::vector<Point3d>(own.size()), own, ofOwn, median()) };
+        SceneImage image = { first.view, first.camera, observed(std::vector<Point3d>(own.size()), own, ofOwn, all.variance) };
         if (image.points.pixel.empty())
             continue;
         std::vector<int> places;

@@ -17,6 +17,7 @@ struct BundleImages
     //! Of each image, of each of its points: its index in the list; in the dense form none.
     std::vector<std::vector<int> > places;
     int listed = 0;                     //!< length of the list
+    double variance = 1;                //!< the median of all pixels' coordinates, as RigViews has it
 
     //! Which views show something, and which cameras.
     std::vector<bool> seenViews() const;

@@ -30,7 +30,10 @@ double calibrateGlass(InputArrayOfArrays objectPoints, InputArrayOfArrays imageP
     task.wantsCovariance = stdDeviations.needed() || covariance.needed();
     const RigFit fit = fitCheckingPairs(rig, task);
     cameraOf(camera) = rig.cameras[0];
-    writeFit(fit, rvecs, tvecs, stdDeviations, covariance, perViewErrors);
+    writePoses(fit.poses, rvecs, tvecs);
+    writeMat(fit.stdDeviations, stdDeviations);
+    writeMat(fit.covariance, covariance);
+    writeMat(fit.perViewErrors, perViewErrors);
     writeMat(fit.jacobian, jacobian);
     return fit.rms;
 }

@@ -11,21 +11,30 @@
 
 namespace cv { namespace refract {
 
-//! What both forms do, but for the results beside cameras, Rs and Ts.
+//! What is known beside images and poses, and what is wanted; the cameras have their parameters.
+static void readOptions(const GlassRigOptions& options, const Rig& rig, RigTask& task)
+{
+    checkPoseCovariances(options.poseCovariances, options.flags);
+    task.cameraPriors = readCameraPriors(options.cameraCovariances, rig.cameras);
+    task.targetCovariance = readTargetCovariance(options.targetCovariance);
+    task.flags = options.flags & ~FROM_EARLIER_FIT;
+    task.isRefit = (options.flags & FROM_EARLIER_FIT) != 0;
+    task.criteria = options.criteria;
+    task.wantsCovariance = options.computeCovariance;
+}
+
+//! What both forms for any number of cameras do, but for the results beside cameras, Rs and Ts.
 static RigFit calibrate(InputArrayOfArrays objectPoints, const std::vector<std::vector<Mat> >& imagePointsDirect,
                         const std::vector<std::vector<Mat> >& imagePointsRefracted,
                         const std::vector<Ptr<RefractiveCamera> >& cameras, const std::vector<int>& windowOfCamera,
                         InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts, InputArrayOfArrays rvecs,
-                        InputArrayOfArrays tvecs, int flags, InputArrayOfArrays poseCovariances, TermCriteria criteria,
-                        InputArrayOfArrays cameraCovariances, InputArray targetCovariance,
-                        const std::vector<std::vector<Mat> >& pixelCovariancesDirect,
-                        const std::vector<std::vector<Mat> >& pixelCovariancesRefracted, bool wantsCovariance)
+                        InputArrayOfArrays tvecs, const GlassRigOptions& options)
 {
+    const int flags = options.flags;
     const int count = (int)cameras.size();
     RigTask task;
-    task.wantsCovariance = wantsCovariance;
     task.views = readRigViews(objectPoints, imagePointsDirect, imagePointsRefracted, count, HalfPixels::TAKEN);
-    addPixelCovariances(pixelCovariancesDirect, pixelCovariancesRefracted, task.views);
+    addPixelCovariances(options.pixelCovariancesDirect, options.pixelCovariancesRefracted, task.views);
     checkCount(imagePointsRefracted.size(), count, "imagePointsRefracted", false);
     checkCount(windowOfCamera.size(), count, "windowOfCamera", true);
     std::vector<String> names, refractedNames;
@@ -42,7 +51,7 @@ static RigFit calibrate(InputArrayOfArrays objectPoints, const std::vector<std::
     if (flags & GLASS_USE_POSES)
     {
         task.knownPoses = readPoses(rvecs, tvecs, task.views.count());
-        task.posePriors = readPosePriors(poseCovariances, task.knownPoses);
+        task.posePriors = readPosePriors(options.poseCovariances, task.knownPoses);
         for (int view = 0; view < task.views.count(); view++)
         {
             if (hasPoints(task.views, view))
@@ -50,79 +59,61 @@ static RigFit calibrate(InputArrayOfArrays objectPoints, const std::vector<std::
             task.knownPoses[view].found = task.posePriors[view].tellsAll();
         }
     }
-    task.cameraPriors = readCameraPriors(cameraCovariances, rig.cameras);
-    task.targetCovariance = readTargetCovariance(targetCovariance);
-    task.flags = flags & ~FROM_EARLIER_FIT;
-    task.isRefit = (flags & FROM_EARLIER_FIT) != 0;
-    task.criteria = criteria;
+    readOptions(options, rig, task);
     const bool placesFollow = task.isIncremental(rig) && Rs.needed() && Ts.needed() && Rs.empty() && Ts.empty();
     rig.extrinsics = placesFollow ? std::vector<Pose>(count) : readExtrinsicPoses(Rs, Ts, count);
 
     const RigFit fit = fitCheckingPairs(rig, task);
     if (areExtrinsicsFree(flags, rig, task.cameraPriors))
         writeExtrinsicPoses(rig, Rs, Ts);
-    setCameras(rig, cameras);           // last: what throws leaves them as they were
+    setCameras(rig, cameras);           // last of these: what throws leaves them as they were
     return fit;
 }
 
 //! Of all calibrations of rigs.
 static const int RIG_FLAGS = MONO_FLAGS | GLASS_FREE_EXTRINSICS | GLASS_FIX_NORMAL;
 
-FitStatistics fitGlassRig(InputArrayOfArrays objectPoints, const std::vector<std::vector<Mat> >& imagePointsDirect,
-                          const std::vector<std::vector<Mat> >& imagePointsRefracted, const std::vector<Ptr<RefractiveCamera> >& cameras,
-                          const std::vector<int>& windowOfCamera, InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts,
-                          InputOutputArrayOfArrays rvecs, InputOutputArrayOfArrays tvecs, OutputArray stdDeviations, OutputArray covariance,
-                          OutputArray perViewErrors, OutputArray imageStatus, OutputArrayOfArrays inliers, OutputArray otherMinima,
-                          InputArray targetCovariance, OutputArray targetErrors, int flags, InputArrayOfArrays poseCovariances,
-                          TermCriteria criteria, InputArrayOfArrays cameraCovariances,
-                          const std::vector<std::vector<Mat> >& pixelCovariancesDirect,
-                          const std::vector<std::vector<Mat> >& pixelCovariancesRefracted)
+static GlassRigResult resultOf(const RigFit& fit, const GlassRigOptions& options)
 {
-    const RigFit fit = calibrate(objectPoints, imagePointsDirect, imagePointsRefracted, cameras, windowOfCamera, Rs, Ts,
-                                 rvecs, tvecs, flags, poseCovariances, criteria, cameraCovariances, targetCovariance,
-                                 pixelCovariancesDirect, pixelCovariancesRefracted, stdDeviations.needed() || covariance.needed());
-    writeFit(fit, rvecs, tvecs, stdDeviations, covariance, perViewErrors);
-    writeMat(fit.imageStatus, imageStatus);
-    writeMasks(fit.inliers, inliers);
-    writeMat(fit.otherMinima, otherMinima);
-    writeMat(fit.targetErrors, targetErrors);
-    return { fit.rms, fit.sigma, fit.freedom };
+    GlassRigResult result;
+    result.rms = fit.rms;
+    result.pixelStd = fit.sigma;
+    result.degreesOfFreedom = fit.freedom;
+    if (options.computeCovariance)      // else it is not as it holds
+    {
+        result.stdDeviations = fit.stdDeviations;
+        result.covariance = fit.covariance;
+    }
+    result.perViewErrors = fit.perViewErrors;
+    result.imageStatus = fit.imageStatus;
+    result.inliers = fit.inliers;
+    result.otherMinima = fit.otherMinima;
+    result.targetErrors = fit.targetErrors;
+    return result;
 }
 
-double calibrateGlassRig(InputArrayOfArrays objectPoints,
-                         const std::vector<std::vector<Mat> >& imagePointsDirect,
-                         const std::vector<std::vector<Mat> >& imagePointsRefracted,
-                         const std::vector<Ptr<RefractiveCamera> >& cameras, const std::vector<int>& windowOfCamera,
-                         InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts, InputOutputArrayOfArrays rvecs,
-                         InputOutputArrayOfArrays tvecs, OutputArray stdDeviations, OutputArray covariance,
-                         OutputArray perViewErrors, OutputArray imageStatus, OutputArrayOfArrays inliers,
-                         OutputArray otherMinima, int flags, InputArrayOfArrays poseCovariances, TermCriteria criteria,
-                         InputArrayOfArrays cameraCovariances, const std::vector<std::vector<Mat> >& pixelCovariancesDirect,
-                         const std::vector<std::vector<Mat> >& pixelCovariancesRefracted)
+GlassRigResult fitGlassRig(InputArrayOfArrays objectPoints, const std::vector<std::vector<Mat> >& imagePointsDirect,
+                           const std::vector<std::vector<Mat> >& imagePointsRefracted,
+                           const std::vector<Ptr<RefractiveCamera> >& cameras, const std::vector<int>& windowOfCamera,
+                           InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts, InputOutputArrayOfArrays rvecs,
+                           InputOutputArrayOfArrays tvecs, const GlassRigOptions& options)
 {
-    return calibrateGlassRig(objectPoints, imagePointsDirect, imagePointsRefracted, cameras, windowOfCamera, Rs, Ts, rvecs, tvecs,
-                             stdDeviations, covariance, perViewErrors, imageStatus, inliers, otherMinima, noArray(), noArray(), flags,
-                             poseCovariances, criteria, cameraCovariances, pixelCovariancesDirect, pixelCovariancesRefracted);
+    const RigFit fit = calibrate(objectPoints, imagePointsDirect, imagePointsRefracted, cameras, windowOfCamera, Rs, Ts, rvecs, tvecs,
+                                 options);
+    writePoses(fit.poses, rvecs, tvecs);
+    return resultOf(fit, options);
 }
 
-double calibrateGlassRig(InputArrayOfArrays objectPoints,
-                         const std::vector<std::vector<Mat> >& imagePointsDirect,
-                         const std::vector<std::vector<Mat> >& imagePointsRefracted,
-                         const std::vector<Ptr<RefractiveCamera> >& cameras, const std::vector<int>& windowOfCamera,
-                         InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts, InputOutputArrayOfArrays rvecs,
-                         InputOutputArrayOfArrays tvecs, OutputArray stdDeviations, OutputArray covariance,
-                         OutputArray perViewErrors, OutputArray imageStatus, OutputArrayOfArrays inliers,
-                         OutputArray otherMinima, InputArray targetCovariance, OutputArray targetErrors, int flags,
-                         InputArrayOfArrays poseCovariances, TermCriteria criteria, InputArrayOfArrays cameraCovariances,
-                         const std::vector<std::vector<Mat> >& pixelCovariancesDirect,
-                         const std::vector<std::vector<Mat> >& pixelCovariancesRefracted)
+GlassRigResult calibrateGlassRig(InputArrayOfArrays objectPoints, const std::vector<std::vector<Mat> >& imagePointsDirect,
+                                 const std::vector<std::vector<Mat> >& imagePointsRefracted,
+                                 const std::vector<Ptr<RefractiveCamera> >& cameras, const std::vector<int>& windowOfCamera,
+                                 InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts, InputOutputArrayOfArrays rvecs,
+                                 InputOutputArrayOfArrays tvecs, const GlassRigOptions& options)
 {
     CV_INSTRUMENT_REGION();
 
-    checkFlags(flags, RIG_FLAGS | GLASS_USE_POSES);
-    return fitGlassRig(objectPoints, imagePointsDirect, imagePointsRefracted, cameras, windowOfCamera, Rs, Ts, rvecs, tvecs,
-                       stdDeviations, covariance, perViewErrors, imageStatus, inliers, otherMinima, targetCovariance, targetErrors,
-                       flags, poseCovariances, criteria, cameraCovariances, pixelCovariancesDirect, pixelCovariancesRefracted).rms;
+    checkFlags(options.flags, RIG_FLAGS | GLASS_USE_POSES);
+    return fitGlassRig(objectPoints, imagePointsDirect, imagePointsRefracted, cameras, windowOfCamera, Rs, Ts, rvecs, tvecs, options);
 }
 
 double calibrateGlassRig(InputArrayOfArrays objectPoints, const std::vector<std::vector<Mat> >& imagePointsDirect,
@@ -134,22 +125,25 @@ double calibrateGlassRig(InputArrayOfArrays objectPoints, const std::vector<std:
     CV_INSTRUMENT_REGION();
 
     checkFlags(flags, RIG_FLAGS);
+    GlassRigOptions options(flags);
+    options.criteria = criteria;
+    options.computeCovariance = false;
     const RigFit fit = calibrate(objectPoints, imagePointsDirect, imagePointsRefracted, cameras, windowOfCamera, Rs, Ts,
-                                 noArray(), noArray(), flags, noArray(), criteria, noArray(), noArray(), {}, {}, false);
-    writeFit(fit, rvecs, tvecs, noArray(), noArray(), noArray());
+                                 noArray(), noArray(), options);
+    writePoses(fit.poses, rvecs, tvecs);
     return fit.rms;
 }
 
-double stereoCalibrateGlass(InputArrayOfArrays objectPoints,
-                            InputArrayOfArrays imagePointsDirect1, InputArrayOfArrays imagePointsRefracted1,
-                            InputArrayOfArrays imagePointsDirect2, InputArrayOfArrays imagePointsRefracted2,
-                            const Ptr<RefractiveCamera>& camera1, const Ptr<RefractiveCamera>& camera2,
-                            InputOutputArray R, InputOutputArray T, OutputArrayOfArrays rvecs,
-                            OutputArrayOfArrays tvecs, OutputArray stdDeviations, OutputArray covariance,
-                            OutputArray perViewErrors, int flags, TermCriteria criteria)
+GlassRigResult stereoCalibrateGlass(InputArrayOfArrays objectPoints,
+                                    InputArrayOfArrays imagePointsDirect1, InputArrayOfArrays imagePointsRefracted1,
+                                    InputArrayOfArrays imagePointsDirect2, InputArrayOfArrays imagePointsRefracted2,
+                                    const Ptr<RefractiveCamera>& camera1, const Ptr<RefractiveCamera>& camera2,
+                                    InputOutputArray R, InputOutputArray T, OutputArrayOfArrays rvecs,
+                                    OutputArrayOfArrays tvecs, const GlassRigOptions& options)
 {
     CV_INSTRUMENT_REGION();
 
+    const int flags = options.flags;
     checkFlags(flags, MONO_FLAGS | GLASS_FREE_EXTRINSICS | GLASS_SHARED_WINDOW);
     Rig rig;
     rig.cameras = camerasOf({ camera1, camera2 }, { "camera1", "camera2" });
@@ -163,19 +157,18 @@ double stereoCalibrateGlass(InputArrayOfArrays objectPoints,
     task.views.cameras.push_back(readCameraViews(imagePointsDirect2, "imagePointsDirect2", imagePointsRefracted2,
                                                  "imagePointsRefracted2", task.views.object));
     checkWindows(rig, task.views, flags, { "imagePointsRefracted1", "imagePointsRefracted2" });
-    task.flags = flags;
-    task.criteria = criteria;
-    task.wantsCovariance = stdDeviations.needed() || covariance.needed();
+    addPixelCovariances(options.pixelCovariancesDirect, options.pixelCovariancesRefracted, task.views);
+    readOptions(options, rig, task);
 
     const RigFit fit = fitCheckingPairs(rig, task);
-    if (flags & GLASS_FREE_EXTRINSICS)
+    if (areExtrinsicsFree(flags, rig, task.cameraPriors))
     {
         writeRotation(rotationMatrix(rig.extrinsics[1].rvec), R);
         Mat(rig.extrinsics[1].tvec).copyTo(T);
     }
     setCameras(rig, { camera1, camera2 });
-    writeFit(fit, rvecs, tvecs, stdDeviations, covariance, perViewErrors);
-    return fit.rms;
+    writePoses(fit.poses, rvecs, tvecs);
+    return resultOf(fit, options);
 }
 
 }} // namespace

@@ -193,7 +193,7 @@ void setCameras(const Rig& rig, const std::vector<Ptr<RefractiveCamera> >& handl
 void checkCount(size_t count, int expected, const char* name, bool mayBeEmpty)
 {
     if ((int)count != expected && !(mayBeEmpty && count == 0))
-        CV_Error_(Error::StsUnmatchedSizes, ("%s has %d elements; cameras has %d", name, (int)count, expected));
+        CV_Error_(Error::StsUnmatchedSizes, ("%s has %d elements; there are %d cameras", name, (int)count, expected));
 }
 
 std::vector<Pose> readExtrinsicPoses(InputArrayOfArrays Rs, InputArrayOfArrays Ts, int cameras)
@@ -222,23 +222,6 @@ bool areExtrinsicsFree(int flags, const Rig& rig, const std::vector<CameraPrior>
             areFree = areFree || (priors[c].covariance.diagonal().tail(6).array() > 0).any();
     }
     return areFree;
-}
-
-void writeMasks(const std::vector<Mat>& masks, OutputArrayOfArrays out)
-{
-    if (!out.needed())
-        return;
-    out.create((int)masks.size(), 1, CV_8U);
-    for (int i = 0; i < (int)masks.size(); i++)
-    {
-        if (masks[i].empty())
-        {
-            out.create(0, 0, CV_8U, i, true);
-            continue;
-        }
-        out.create(masks[i].size(), CV_8U, i, true);
-        masks[i].copyTo(out.getMat(i));
-    }
 }
 
 }} // namespace

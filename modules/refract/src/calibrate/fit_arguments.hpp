@@ -54,7 +54,6 @@ void setOwners(Rig& rig, const std::vector<int>& windowOfCamera);
 
 std::vector<Pose> readExtrinsicPoses(InputArrayOfArrays Rs, InputArrayOfArrays Ts, int cameras);
 void writeExtrinsicPoses(const Rig& rig, InputOutputArrayOfArrays Rs, InputOutputArrayOfArrays Ts);
-void writeMasks(const std::vector<Mat>& masks, OutputArrayOfArrays out);
 
 }} // namespace
 

@@ -116,12 +116,16 @@ void checkKnown(const Pose& pose, int view, const PosePrior& prior)
     }
 }
 
-std::vector<PosePrior> readPosePriors(InputArrayOfArrays covariances, const std::vector<Pose>& poses)
+void checkPoseCovariances(const std::vector<Mat>& covariances, int flags)
+{
+    if (!covariances.empty() && !(flags & GLASS_USE_POSES))
+        CV_Error(Error::StsBadArg, "poseCovariances is given, but flags has no GLASS_USE_POSES");
+}
+
+std::vector<PosePrior> readPosePriors(const std::vector<Mat>& covariances, const std::vector<Pose>& poses)
 {
     const int count = (int)poses.size();
-    std::vector<Mat> all;
-    if (!covariances.empty())
-        covariances.getMatVector(all);              // of a std::vector<Matx66d>, too
+    std::vector<Mat> all = covariances;
     if (!all.empty() && (int)all.size() != count)
         CV_Error_(Error::StsUnmatchedSizes, ("poseCovariances has %d elements, but there are %d views", (int)all.size(), count));
     all.resize(count);
@@ -131,13 +135,11 @@ std::vector<PosePrior> readPosePriors(InputArrayOfArrays covariances, const std:
     return priors;
 }
 
-std::vector<CameraPrior> readCameraPriors(InputArrayOfArrays covariances, const std::vector<Camera>& cameras)
+std::vector<CameraPrior> readCameraPriors(const std::vector<Mat>& all, const std::vector<Camera>& cameras)
 {
     std::vector<CameraPrior> priors;
-    if (covariances.empty())
+    if (all.empty())
         return priors;
-    std::vector<Mat> all;
-    covariances.getMatVector(all);
     checkCount(all.size(), (int)cameras.size(), "cameraCovariances", false);
     for (int c = 0; c < (int)all.size(); c++)
     {
@@ -161,10 +163,9 @@ std::vector<CameraPrior> readCameraPriors(InputArrayOfArrays covariances, const 
     return priors;
 }
 
-Eigen::MatrixXd readTargetCovariance(InputArray covariance)
+Eigen::MatrixXd readTargetCovariance(const Mat& given)
 {
     const int count = SharedTargetErrors::COUNT;
-    const Mat given = covariance.getMat();
     if (given.empty())
         return Eigen::MatrixXd();
     if (given.channels() != 1 || given.rows != count || given.cols != count)

@@ -20,12 +20,14 @@ void holdExactly(int first, double distance, PosePrior& prior);
 //! Throws where something is known of a coordinate that is not finite.
 void checkKnown(const Pose& pose, int view, const PosePrior& prior);
 //! Poses that are known: exactly, or with a covariance, in part or not at all.
-std::vector<PosePrior> readPosePriors(InputArrayOfArrays covariances, const std::vector<Pose>& poses);
+std::vector<PosePrior> readPosePriors(const std::vector<Mat>& covariances, const std::vector<Pose>& poses);
+//! Throws where they are given, but not used.
+void checkPoseCovariances(const std::vector<Mat>& covariances, int flags);
 
 //! LxL, PxP or (P+6)x(P+6) of each camera; noArray(): none.
-std::vector<CameraPrior> readCameraPriors(InputArrayOfArrays covariances, const std::vector<Camera>& cameras);
+std::vector<CameraPrior> readCameraPriors(const std::vector<Mat>& covariances, const std::vector<Camera>& cameras);
 //! Of what all views share, 7x7, or nothing: SharedTargetErrors.
-Eigen::MatrixXd readTargetCovariance(InputArray covariance);
+Eigen::MatrixXd readTargetCovariance(const Mat& given);
 
 }} // namespace
 

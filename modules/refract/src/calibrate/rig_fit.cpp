@@ -286,7 +286,7 @@ static FitOutcome fitSeen(Rig& rig, const RigTask& given, RigFit& fit)
     if (task.wantsCovariance && (criteria.type & TermCriteria::EPS))        // else it is not where the squares are least
         covariance.widen(problem);
     eigen2cv(covariance.ofParameters, fit.covariance);
-    fit.sigma = std::sqrt(variance);
+    fit.sigma = std::sqrt(variance/task.views.variance);    // of a usual pixel
     fit.freedom = problem.freedom();
     fit.targetErrors = targetErrorsOf(problem);
     describeImages(problem, task, outliers.imageStatus(), fit);
@@ -381,14 +381,10 @@ void writeMat(const Mat& from, OutputArray to)
         from.copyTo(to);
 }
 
-void writeFit(const RigFit& fit, OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs, OutputArray stdDeviations,
-              OutputArray covariance, OutputArray perViewErrors)
+void writePoses(const std::vector<Pose>& poses, OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs)
 {
-    writeVectors(fit.poses, &Pose::rvec, rvecs);
-    writeVectors(fit.poses, &Pose::tvec, tvecs);
-    writeMat(fit.stdDeviations, stdDeviations);
-    writeMat(fit.covariance, covariance);
-    writeMat(fit.perViewErrors, perViewErrors);
+    writeVectors(poses, &Pose::rvec, rvecs);
+    writeVectors(poses, &Pose::tvec, tvecs);
 }
 
 }} // namespace

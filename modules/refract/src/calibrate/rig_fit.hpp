@@ -49,10 +49,9 @@ c' = c - (a.c) a of center c and axis a, so do the center's rows of the covarian
 one), which is a turn about c' then. Tubes that were given stay as they are. */
 void toNearestCenters(Rig& rig, RigFit& fit);
 
-//! What all calibrators return; copies what is wanted.
-void writeFit(const RigFit& fit, OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs, OutputArray stdDeviations,
-              OutputArray covariance, OutputArray perViewErrors);
-void writeMat(const Mat& from, OutputArray to);
+//! As rvecs and tvecs, if these are wanted.
+void writePoses(const std::vector<Pose>& poses, OutputArrayOfArrays rvecs, OutputArrayOfArrays tvecs);
+void writeMat(const Mat& from, OutputArray to);     //!< if it is wanted
 
 }} // namespace
 

@@ -42,10 +42,10 @@ double calibrateGlass(InputArrayOfArrays, InputArrayOfArrays, InputArrayOfArrays
     throwWithoutCeres("calibrateGlass");
 }
 
-double stereoCalibrateGlass(InputArrayOfArrays, InputArrayOfArrays, InputArrayOfArrays, InputArrayOfArrays,
-                            InputArrayOfArrays, const Ptr<RefractiveCamera>&, const Ptr<RefractiveCamera>&, InputOutputArray,
-                            InputOutputArray, OutputArrayOfArrays, OutputArrayOfArrays, OutputArray, OutputArray, OutputArray,
-                            int, TermCriteria)
+GlassRigResult stereoCalibrateGlass(InputArrayOfArrays, InputArrayOfArrays, InputArrayOfArrays, InputArrayOfArrays,
+                                    InputArrayOfArrays, const Ptr<RefractiveCamera>&, const Ptr<RefractiveCamera>&,
+                                    InputOutputArray, InputOutputArray, OutputArrayOfArrays, OutputArrayOfArrays,
+                                    const GlassRigOptions&)
 {
     throwWithoutCeres("stereoCalibrateGlass");
 }
@@ -64,21 +64,9 @@ int selectLensCoefficients(InputArrayOfArrays, const std::vector<std::vector<Mat
     throwWithoutCeres("selectLensCoefficients");
 }
 
-double calibrateGlassRig(InputArrayOfArrays, const std::vector<std::vector<Mat> >&, const std::vector<std::vector<Mat> >&,
-                         const std::vector<Ptr<RefractiveCamera> >&, const std::vector<int>&, InputOutputArrayOfArrays,
-                         InputOutputArrayOfArrays, InputOutputArrayOfArrays, InputOutputArrayOfArrays, OutputArray, OutputArray,
-                         OutputArray, OutputArray, OutputArrayOfArrays, OutputArray, int, InputArrayOfArrays, TermCriteria,
-                         InputArrayOfArrays, const std::vector<std::vector<Mat> >&, const std::vector<std::vector<Mat> >&)
-{
-    throwWithoutCeres("calibrateGlassRig");
-}
-
-double calibrateGlassRig(InputArrayOfArrays, const std::vector<std::vector<Mat> >&, const std::vector<std::vector<Mat> >&,
-                         const std::vector<Ptr<RefractiveCamera> >&, const std::vector<int>&, InputOutputArrayOfArrays,
-                         InputOutputArrayOfArrays, InputOutputArrayOfArrays, InputOutputArrayOfArrays, OutputArray, OutputArray,
-                         OutputArray, OutputArray, OutputArrayOfArrays, OutputArray, InputArray, OutputArray, int, InputArrayOfArrays,
-                         TermCriteria, InputArrayOfArrays, const std::vector<std::vector<Mat> >&,
-                         const std::vector<std::vector<Mat> >&)
+GlassRigResult calibrateGlassRig(InputArrayOfArrays, const std::vector<std::vector<Mat> >&, const std::vector<std::vector<Mat> >&,
+                                 const std::vector<Ptr<RefractiveCamera> >&, const std::vector<int>&, InputOutputArrayOfArrays,
+                                 InputOutputArrayOfArrays, InputOutputArrayOfArrays, InputOutputArrayOfArrays, const GlassRigOptions&)
 {
     throwWithoutCeres("calibrateGlassRig");
 }
@@ -90,29 +78,25 @@ double calibrateGlassRig(InputArrayOfArrays, const std::vector<std::vector<Mat> 
     throwWithoutCeres("calibrateGlassRig");
 }
 
-FitStatistics fitGlassRig(InputArrayOfArrays, const std::vector<std::vector<Mat> >&, const std::vector<std::vector<Mat> >&,
-                          const std::vector<Ptr<RefractiveCamera> >&, const std::vector<int>&, InputOutputArrayOfArrays,
-                          InputOutputArrayOfArrays, InputOutputArrayOfArrays, InputOutputArrayOfArrays, OutputArray, OutputArray,
-                          OutputArray, OutputArray, OutputArrayOfArrays, OutputArray, InputArray, OutputArray, int, InputArrayOfArrays,
-                          TermCriteria, InputArrayOfArrays, const std::vector<std::vector<Mat> >&, const std::vector<std::vector<Mat> >&)
+GlassRigResult fitGlassRig(InputArrayOfArrays, const std::vector<std::vector<Mat> >&, const std::vector<std::vector<Mat> >&,
+                           const std::vector<Ptr<RefractiveCamera> >&, const std::vector<int>&, InputOutputArrayOfArrays,
+                           InputOutputArrayOfArrays, InputOutputArrayOfArrays, InputOutputArrayOfArrays, const GlassRigOptions&)
 {
     throwWithoutCeres("calibrateGlassRig");
 }
 
-double refractiveBundleAdjust(const std::vector<std::vector<Mat> >&, const std::vector<Ptr<RefractiveCamera> >&,
-                              const std::vector<int>&, InputOutputArrayOfArrays, InputOutputArrayOfArrays,
-                              InputOutputArrayOfArrays, InputOutputArrayOfArrays, InputOutputArray, InputArray, OutputArray,
-                              OutputArray, OutputArray, OutputArray, OutputArrayOfArrays, int, InputArrayOfArrays, TermCriteria,
-                              InputArrayOfArrays, const std::vector<std::vector<Mat> >&, InputArray, double)
+BundleAdjustResult refractiveBundleAdjust(const std::vector<std::vector<Mat> >&, const std::vector<Ptr<RefractiveCamera> >&,
+                                          const std::vector<int>&, InputOutputArrayOfArrays, InputOutputArrayOfArrays,
+                                          InputOutputArrayOfArrays, InputOutputArrayOfArrays, InputOutputArray, InputArray,
+                                          const BundleAdjustOptions&)
 {
     throwWithoutCeres("refractiveBundleAdjust");
 }
 
-double refractiveBundleAdjust(InputArray, InputArray, const std::vector<Ptr<RefractiveCamera> >&, const std::vector<int>&,
-                              InputOutputArrayOfArrays, InputOutputArrayOfArrays, InputOutputArrayOfArrays,
-                              InputOutputArrayOfArrays, InputOutputArray, InputArray, OutputArray, OutputArray,
-                              OutputArrayOfArrays, OutputArray, OutputArray, OutputArray, int, InputArrayOfArrays, TermCriteria,
-                              InputArrayOfArrays, InputArray, InputArray, double, double)
+BundleAdjustResult refractiveBundleAdjust(InputArray, InputArray, const std::vector<Ptr<RefractiveCamera> >&,
+                                          const std::vector<int>&, InputOutputArrayOfArrays, InputOutputArrayOfArrays,
+                                          InputOutputArrayOfArrays, InputOutputArrayOfArrays, InputOutputArray, InputArray,
+                                          const BundleAdjustOptions&)
 {
     throwWithoutCeres("refractiveBundleAdjust");
 }

@@ -372,7 +372,8 @@ class refract_test(NewOpenCVTests):
         result = cv.refract.stereoCalibrateGlass(boards, make_views(bare), make_views(self.camera1),
                                                  make_views(bare, True), make_views(self.camera2, True),
                                                  first, second, R.copy(), T.copy())
-        self.assertLess(result[0], 1e-6)
+        self.assertLess(result[0].rms, 1e-6)
+        self.assertEqual((5, 4), result[0].perViewErrors.shape)
         self.assertClose(make_window().normal, first.window().normal, 1e-6)
         self.assertClose(make_window(0.18).normal, second.window().normal, 1e-6)
 
@@ -381,23 +382,28 @@ class refract_test(NewOpenCVTests):
         bare = cv.refract.RefractiveCamera.create(K, D)
         cameras = [cv.refract.RefractiveCamera.create(K, D, cv.refract.GlassWindow((0, 0, 1), 20, 1.5437, 50))
                    for _ in range(2)]
+        options = cv.refract.GlassRigOptions(cv.refract.GLASS_ROBUST)
         result = cv.refract.calibrateGlassRigExtended(
             [make_board()]*5, [make_views(bare), make_views(bare, True)],
             [make_views(self.camera1), make_views(self.camera2, True)], cameras, [0, 1], [np.eye(3), R.copy()], [np.zeros(3), T.copy()],
-            [], [], flags=cv.refract.GLASS_ROBUST)
-        self.assertEqual(11, len(result))
-        moved = cv.refract.calibrateGlassRigTargets(
+            [], [], options)
+        self.assertEqual((5, 20, (2, 5)), (len(result), len(result[0].inliers), result[0].otherMinima.shape))
+        options.targetCovariance = 1e-6*np.eye(7)
+        options.cameraCovariances = [1e-2*np.eye(8), None]
+        self.assertEqual((cv.refract.GLASS_ROBUST, (8, 8)), (options.flags, options.cameraCovariances[0].shape))
+        options.cameraCovariances = []
+        moved = cv.refract.calibrateGlassRigExtended(
             [make_board()]*5, [make_views(bare), make_views(bare, True)],
             [make_views(self.camera1), make_views(self.camera2, True)], [camera.clone() for camera in cameras], [0, 1],
-            [np.eye(3), R.copy()], [np.zeros(3), T.copy()], [], [], 1e-6*np.eye(7))
-        self.assertEqual((12, (7, 1)), (len(moved), moved[-1].shape))
+            [np.eye(3), R.copy()], [np.zeros(3), T.copy()], [], [], options)
+        self.assertEqual((7, 1), moved[0].targetErrors.shape)
         rms, Rs, Ts, rvecs, tvecs = cv.refract.calibrateGlassRig(
             [make_board()]*5, [make_views(bare), make_views(bare, True)],
             [make_views(self.camera1), make_views(self.camera2, True)], [camera.clone() for camera in cameras], [],
             [np.eye(3), R.copy()], [np.zeros(3), T.copy()])
         self.assertLess(rms, 1e-6)
         self.assertEqual((2, 5), (len(Rs), len(tvecs)))
-        self.assertLess(result[0], 1e-6)
+        self.assertLess(result[0].rms, 1e-6)
         self.assertClose(make_window().normal, cameras[0].window().normal, 1e-6)
         self.assertClose(make_window(0.18).normal, cameras[1].window().normal, 1e-6)
 
@@ -424,22 +430,24 @@ class refract_test(NewOpenCVTests):
         cameras = [self.camera1.clone(), self.camera2.clone()]
         result = cv.refract.refractiveBundleAdjustExtended(
             [[pixels[0]], [pixels[1]]], cameras, [0, 1], [np.eye(3), R.copy()], [np.zeros(3), T.copy()], [self.zero.copy()],
-            [self.zero.copy()], points + 0.5, lengths)
-        self.assertLess(result[0], 1e-5)
+            [self.zero.copy()], points + 0.5, lengths, cv.refract.BundleAdjustOptions())
+        self.assertLess(result[0].rms, 1e-5)
         self.assertClose(points, result[5], 1e-3)
-        count = result[7].shape[0]
+        options = cv.refract.BundleAdjustOptions()
+        options.rigCovariance = np.zeros(result[0].covariance.shape)
+        options.lengthScaleStd = 1e-3
         known = cv.refract.refractiveBundleAdjustExtended(
             [[pixels[0]], [pixels[1]]], cameras, [0, 1], [np.eye(3), R.copy()], [np.zeros(3), T.copy()], [self.zero.copy()],
-            [self.zero.copy()], points + 0.5, lengths, rigCovariance=np.zeros((count, count)), lengthScaleStd=1e-3)
+            [self.zero.copy()], points + 0.5, lengths, options)
         self.assertClose(points, known[5], 1e-3)
-        self.assertGreater(np.nanmin(known[8][:, 2]/points[:, 2]), 1e-4)
+        self.assertGreater(np.nanmin(known[0].pointDeviations[:, 2]/points[:, 2]), 1e-4)
         observations = np.array([(0, camera, point) for camera in range(2) for point in range(30)], np.int32)
         listed = cv.refract.refractiveBundleAdjustSparse(
             observations, np.concatenate([p.reshape(-1, 2) for p in pixels]), cameras, [0, 1], [np.eye(3), R.copy()],
-            [np.zeros(3), T.copy()], [self.zero.copy()], [self.zero.copy()], points + 0.5, lengths)
-        self.assertLess(listed[0], 1e-5)
+            [np.zeros(3), T.copy()], [self.zero.copy()], [self.zero.copy()], points + 0.5, lengths, cv.refract.BundleAdjustOptions())
+        self.assertLess(listed[0].rms, 1e-5)
         self.assertClose(points, listed[5], 1e-3)
-        self.assertEqual((60, 1), listed[-1].shape)
+        self.assertEqual(((60, 1), (6, 6)), (listed[0].inliers[0].shape, listed[0].viewCovariances[0].shape))
 
     def test_pnp_generic_extended(self):
         pose = np.array([0.1, -0.2, 0.3]), np.array([10., -5, 620])
