@@ -119,6 +119,29 @@ TEST_CASE("A model of COLMAP is written as it was read", "[colmap]")
     CHECK(again.cameras[0].parameters == model.cameras[0].parameters);
 }
 
+TEST_CASE("Texts of a model may have blanks in names, and what editors of Windows write", "[colmap]")
+{
+    const TemporaryFolder f;
+    saveText(f);
+    for (const char* file : FILES)
+    {
+        std::string text = "\xEF\xBB\xBF", name = file + std::string(".txt");
+        for (char c : bytesOf(f/name))
+            text += c == '\n' ? std::string("\r\n") : std::string(1, c);
+        const size_t at = text.find("left/a.png");
+        if (at != std::string::npos)
+            text.insert(at + 5, "pass 2 of ");
+        saved(f, name, text);
+    }
+    const ColmapModel model = readColmapModel(f.path().string());
+    REQUIRE(model.images.size() == 3);
+    CHECK(model.images[0].name == "left/pass 2 of a.png");
+    CHECK(model.images[0].pixels.size() == 2);
+    const TemporaryFolder again;
+    writeColmapModel(model, again.path().string());
+    CHECK(readColmapModel(again.path().string()).images[0].name == model.images[0].name);
+}
+
 TEST_CASE("A model of COLMAP takes the place of another in its folder", "[colmap]")
 {
     const TemporaryFolder f;

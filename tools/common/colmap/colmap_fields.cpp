@@ -113,6 +113,18 @@ void ColmapFields::word(std::string& text)
         bytes_ += (bytes_.empty() || bytes_.back() == '\n' ? "" : " ") + text;
 }
 
+void ColmapFields::restOfLine(std::string& text)
+{
+    const size_t begin = at_;
+    word(text);
+    if (isBinary_ || !isReading_)
+        return;
+    const std::string line = bytes_.substr(begin, bytes_.find('\n', begin) - begin);
+    const size_t first = line.find_first_not_of(" \t");
+    text = line.substr(first, line.find_last_not_of(" \t\r") + 1 - first);
+    at_ = begin + first + text.size();
+}
+
 void ColmapFields::kind(int& value, const std::vector<std::string>& words, const std::string& what)
 {
     if (isBinary_)

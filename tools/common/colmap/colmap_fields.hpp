@@ -29,6 +29,7 @@ public:
     template<typename... T> void numbers(T&... values) { (number(values), ...); }
     //! A word of one line; bytes end with a zero.
     void word(std::string& text);
+    void restOfLine(std::string& text);         //!< as a word, but a text may have blanks
     //! A word that bytes have a number for. @param words by number @param what they are
     void kind(int& value, const std::vector<std::string>& words, const std::string& what);
     //! How many entries of a list follow; a text ends them with its line. @param each numbers of an entry, at the least

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "colmap/colmap_model.hpp"
+#include "console/byte_order_mark.hpp"
 #include "console/failure.hpp"
 #include "console/file_output.hpp"
 #include "colmap/colmap_fields.hpp"
@@ -48,7 +49,7 @@ void record(ColmapFields& io, ColmapImage& image)
     io.number(image.id);
     pose(io, image.cam_from_world);
     io.number(image.camera);
-    io.word(image.name);
+    io.restOfLine(image.name);
     io.endLine();
     image.pixels.resize(io.list(image.pixels.size(), 3, 24));
     for (ColmapPixel& pixel : image.pixels)
@@ -112,6 +113,8 @@ template<typename T> void readFile(const std::string& path, bool isBinary, std::
     if (!in)
         throw Failure("there is no '" + path + "' that can be read: a COLMAP model is cameras, images and points3D, all .bin or all .txt");
     std::string bytes{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+    if (!isBinary)
+        bytes = withoutByteOrderMark(bytes);
     ColmapFields io(bytes, isBinary, ColmapFields::READ);
     try
     {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "console/csv.hpp"
+#include "console/byte_order_mark.hpp"
 #include "console/failure.hpp"
 #include "console/numbers.hpp"
 #include "console/table.hpp"
@@ -67,13 +68,13 @@ std::string joined(const std::vector<std::string>& names)
     return text;
 }
 
-//! One line; the first one without the mark with which some programs begin UTF-8.
+//! One line.
 bool readLine(std::istream& in, std::string& line, int number)
 {
     if (!takeLine(in, line))
         return false;
-    if (number == 1 && line.compare(0, 3, "\xEF\xBB\xBF") == 0)
-        line.erase(0, 3);
+    if (number == 1)
+        line = withoutByteOrderMark(line);
     return true;
 }
 

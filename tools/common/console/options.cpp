@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "console/options.hpp"
+#include "console/byte_order_mark.hpp"
 #include "console/failure.hpp"
 #include "console/numbers.hpp"
 #include <CLI/CLI.hpp>
@@ -74,8 +75,7 @@ static std::string nameOf(const std::string& line)
 //! The text of a file of settings, without a byte order mark. Throws Failure for a setting that comes twice.
 static std::string readSettings(std::istream& in)
 {
-    const std::string MARK = "\xEF\xBB\xBF", text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
-    std::istringstream lines(text.compare(0, MARK.size(), MARK) == 0 ? text.substr(MARK.size()) : text);
+    std::istringstream lines(withoutByteOrderMark({std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()}));
     std::set<std::string> names;
     for (std::string line; std::getline(lines, line); )
     {

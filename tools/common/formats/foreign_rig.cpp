@@ -3,6 +3,7 @@
 
 #include "formats/foreign_rig.hpp"
 #include "camera/storage.hpp"
+#include "console/byte_order_mark.hpp"
 #include "console/images.hpp"
 #include "console/numbers.hpp"
 #include "console/table.hpp"
@@ -211,9 +212,7 @@ ForeignFile contentsOf(const std::string& name)
     if (!std::filesystem::is_regular_file(name, error) || std::filesystem::file_size(name, error) > MOST)
         return file;
     std::ifstream in(name, std::ios::binary);
-    file.bytes.assign(std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>());
-    if (begins(file, "\xEF\xBB\xBF"))
-        file.bytes.erase(0, 3);
+    file.bytes = withoutByteOrderMark({std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()});
     return file;
 }
 
