@@ -17,7 +17,9 @@
 #include "match/scene_matches.hpp"
 #include "match/wand_matches.hpp"
 
+#include <cmath>
 #include <iostream>
+#include <numeric>
 #include <sstream>
 
 static const char MANUAL[] = R"(Calibrates a rig behind its windows without a target, from points that several cameras saw: the ends of a
@@ -173,7 +175,7 @@ Calibration resultOf(const Options& o, const BundleAdjustment& adjustment, const
 void explain(const Options& o, const Calibration& file, const Matches& matches, const GivenLengths& lengths, const BundleStart& start,
              const BundleAdjustment& adjustment, BundleFindings& findings)
 {
-    if (findings.contradictions.empty() || file.covariance.empty())
+    if (findings.contradictions.empty() || findings.areMeasuresWrong || file.covariance.empty())
         return;
     BundleOptions options = o.bundle;
     const std::string explanation = explanationOf(start.free, adjustment.fit.sigma, [&](const std::vector<std::string>& free) {
@@ -233,13 +235,33 @@ double knownNoise(const Options& o, const Calibration& file, const Matches& matc
     return o.pixelSigma > 0. ? o.pixelSigma : !matches.stds.empty() ? matches.usualStd() : file.sigma;
 }
 
+MeasuredBundle measuredBundle(const Options& o, const Matches& matches, const GivenLengths& lengths, const BundleStart& start)
+{
+    MeasuredBundle measured;
+    measured.measures.lengths = lengths;
+    measured.lengthsPath = o.wand.empty() ? o.lengths : "--wand";
+    std::vector<int> points(matches.names.size());
+    std::iota(points.begin(), points.end(), 0);
+    measured.points.assign(matches.cameraCount(), points);
+    measured.adjust = [&](const Measures& measures, const std::vector<std::vector<uchar>>* only) {
+        Matches seen = matches;
+        for (int c = 0; only && c < matches.cameraCount(); c++)
+            for (size_t i = 0; i < matches.names.size(); i++)
+                if (!(*only)[c][i])
+                    seen.pixels[c][i] = cv::Point2d(NAN, NAN);
+        return adjustBundle(start, seen, measures.lengths, !only && o.robust);
+    };
+    return measured;
+}
+
 //! What is to be thought of it, and why it is not as the start says: what the images are comes before what that leads to.
 BundleFindings examine(const Options& o, const Calibration& file, const Matches& matches, const GivenLengths& lengths,
                        const BundleStart& start, const BundleAdjustment& adjustment)
 {
     const double knownSigma = knownNoise(o, file, matches);
     const auto adjust = [&](const BundleStart& from) { return adjustBundle(from, matches, lengths, o.robust); };
-    BundleFindings findings = findingsOf(start, lengths, adjustment, adjust, knownSigma, o.maxRms);
+    const MeasuredBundle measured = measuredBundle(o, matches, lengths, start);
+    BundleFindings findings = findingsOf(start, lengths, adjustment, adjust, knownSigma, o.maxRms, &measured);
     std::string mistake = lateCamera(start, matches, lengths, o.robust, adjustment.fit.sigma, knownSigma);
     if (mistake.empty() && !findings.contradictions.empty())
         mistake = exchangedCameras(start, matches, lengths, o.robust, knownSigma);

@@ -7,6 +7,7 @@
 #include "bundle/bundle_start.hpp"
 #include "calibrate/fit.hpp"
 #include <functional>
+#include <map>
 
 namespace tools {
 
@@ -18,11 +19,14 @@ struct BundleAdjustment
     std::vector<cv::Point3d> points;    //!< of Matches::names, in camera 1; NaN: no answer
     std::vector<cv::Vec3d> sigma;       //!< of the same
     std::vector<uchar> status;          //!< of the same, as Measurement::status
-    std::vector<std::vector<uchar>> used;   //!< per camera, per point
+    std::vector<std::vector<uchar>> used;   //!< per camera, per point; of a survey: one list, of its observations
     int usedPixels = 0, seenPixels = 0; //!< of points that two cameras saw
     double squaredPixels = 0.;          //!< px^2, of what is used, each over its relative variance
-    double squaredKnown = 0.;           //!< of lengths and what was known, over their variances
+    double squaredKnown = 0.;           //!< of lengths, positions and what was known, over their variances
+    std::map<int, cv::Vec3d> places;    //!< where views are of which positions are known
 
+    //! Squares over variances, less what they are expected to be: pixels that are left out have none. @param sigma of a pixel
+    double costAt(double sigma) const { return squaredPixels/(sigma*sigma) - 2.*usedPixels + squaredKnown; }
     int answers() const;
     std::vector<int> outliers() const;  //!< points with a pixel that no point explains
 };

@@ -140,6 +140,24 @@ double noiseOfAll(const BundleAdjustment& adjustment)
     return adjustment.fit.sigma*std::sqrt(1. - left + left*CUT2/2.);
 }
 
+//! Of matches that are wrong, or do not go with the start.
+void findNoise(const BundleAdjustment& adjustment, double knownSigma, BundleFindings& findings)
+{
+    const double NOISIER = 5., NO_DETECTOR = 2.;     // px
+    const double MOST_LEFT_OUT = 1./3.;
+    if (knownSigma > 0. && adjustment.fit.sigma > NOISIER*knownSigma)
+        findings.contradictions.push_back(format("the matches are off by %.3g px, where the noise is known to be %.3g px: matches are "
+                                                 "wrong, or something is not as the start says", adjustment.fit.sigma, knownSigma));
+    else if (!(knownSigma > 0.) && noiseOfAll(adjustment) > NO_DETECTOR)
+        findings.contradictions.push_back(format("the matches are off by %.3g px, more than found points are: are the cameras in the "
+                                                 "order of the start, the pixels raw and not mirrored, and is what is not free as the "
+                                                 "start says? (If they are that noisy, say --pixel-sigma)", noiseOfAll(adjustment)));
+    else if (shareLeftOut(adjustment) > MOST_LEFT_OUT)
+        findings.contradictions.push_back(format("%.0f %% of the pixels do not fit the others, and so many wrong ones agree with each "
+                                                 "other, too: are the cameras in the order of the start, the pixels raw and not mirrored?",
+                                                 100.*shareLeftOut(adjustment)));
+}
+
 } // namespace
 
 std::string BundleFindings::verdict() const
@@ -152,7 +170,7 @@ std::string BundleFindings::verdict() const
 }
 
 BundleFindings findingsOf(const BundleStart& start, const GivenLengths& lengths, const BundleAdjustment& adjustment,
-                          const Readjust& adjust, double knownSigma, double maxRms)
+                          const Readjust& adjust, double knownSigma, double maxRms, const MeasuredBundle* measured)
 {
     const Fit& fit = adjustment.fit;
     BundleFindings findings;
@@ -165,23 +183,14 @@ BundleFindings findingsOf(const BundleStart& start, const GivenLengths& lengths,
     const double FEW = 60.;
     if (fit.dof < FEW)
         findings.weak.push_back("so few data (every +- may be 1.4 times larger)");
-    const std::string contradiction = contradictionOf(start, adjustment, adjust);
+    const std::string ofMeasures = measured ? contradictionOf(*measured, adjustment) : "";
+    findings.areMeasuresWrong = !ofMeasures.empty();
+    const std::string contradiction = findings.areMeasuresWrong ? ofMeasures : contradictionOf(start, adjustment, adjust);
     if (!contradiction.empty())
         findings.contradictions.push_back(contradiction);
     findFarSteps(start, findings);
-    const double NOISIER = 5., NO_DETECTOR = 2.;     // px
-    const double MOST_LEFT_OUT = 1./3.;
-    if (knownSigma > 0. && fit.sigma > NOISIER*knownSigma)
-        findings.contradictions.push_back(format("the matches are off by %.3g px, where the noise is known to be %.3g px: matches are "
-                                                 "wrong, or something is not as the start says", fit.sigma, knownSigma));
-    else if (!(knownSigma > 0.) && noiseOfAll(adjustment) > NO_DETECTOR)
-        findings.contradictions.push_back(format("the matches are off by %.3g px, more than found points are: are the cameras in the "
-                                                 "order of the start, the pixels raw and not mirrored, and is what is not free as the "
-                                                 "start says? (If they are that noisy, say --pixel-sigma)", noiseOfAll(adjustment)));
-    else if (shareLeftOut(adjustment) > MOST_LEFT_OUT)
-        findings.contradictions.push_back(format("%.0f %% of the pixels do not fit the others, and so many wrong ones agree with each "
-                                                 "other, too: are the cameras in the order of the start, the pixels raw and not mirrored?",
-                                                 100.*shareLeftOut(adjustment)));
+    if (!findings.areMeasuresWrong)     // else right pixels do not fit, either
+        findNoise(adjustment, knownSigma, findings);
     findings.maxRms = maxRms;
     findings.limitMet = !(maxRms > 0.) || fit.rms <= maxRms;
     return findings;

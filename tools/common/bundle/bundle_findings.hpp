@@ -6,6 +6,7 @@
 
 #include "bundle/bundle_adjustment.hpp"
 #include "bundle/bundle_start.hpp"
+#include "bundle/measures.hpp"
 #include <functional>
 
 namespace tools {
@@ -32,6 +33,7 @@ struct BundleFindings
     std::string scale;                  //!< what tells it
     std::vector<std::string> weak;      //!< estimated, but hardly determined: name = value +- std
     std::vector<std::string> contradictions;    //!< what was known of the start, and is so no longer; a sentence each
+    bool areMeasuresWrong = false;      //!< the first contradiction is of lengths or positions
     double maxRms = 0.;                 //!< the limit; 0: none
     bool limitMet = true;
 
@@ -45,9 +47,10 @@ using Readjust = std::function<BundleAdjustment(const BundleStart& start)>;
 //! What was known of a number and is contradicted by the matches, a sentence; empty: nothing is.
 std::string contradictionOf(const BundleStart& start, const BundleAdjustment& adjustment, const Readjust& adjust);
 
-//! @param knownSigma of a pixel coordinate; not above 0: unknown
+/** @param measured nothing given of the scale is believed if this is there
+@param knownSigma of a pixel coordinate; not above 0: unknown */
 BundleFindings findingsOf(const BundleStart& start, const GivenLengths& lengths, const BundleAdjustment& adjustment,
-                          const Readjust& adjust, double knownSigma, double maxRms);
+                          const Readjust& adjust, double knownSigma, double maxRms, const MeasuredBundle* measured = nullptr);
 
 //! What was said of where windows are, if that was not the file: against what the matches tell without it.
 void checkPlaces(const BundleStart& start, const Readjust& adjust, BundleFindings& findings);

@@ -84,19 +84,13 @@ BundleStart withUnknown(const KnownValue& value, const BundleStart& start)
     return freed;
 }
 
-//! Squares over variances, less what they are expected to be: pixels that are left out have none.
-double costOf(const BundleAdjustment& adjustment, double sigma)
-{
-    return adjustment.squaredPixels/(sigma*sigma) - 2.*adjustment.usedPixels + adjustment.squaredKnown;
-}
-
 //! By how many standard deviations what is found contradicts what was known.
 double deviationsOf(const KnownValue& value, const BundleStart& start, const BundleAdjustment& adjustment, const Readjust& adjust)
 {
     try
     {
         const BundleAdjustment freed = adjust(withUnknown(value, start));
-        return std::sqrt(std::max(0., costOf(adjustment, freed.fit.sigma) - costOf(freed, freed.fit.sigma)));
+        return std::sqrt(std::max(0., adjustment.costAt(freed.fit.sigma) - freed.costAt(freed.fit.sigma)));
     }
     catch (const Failure&)              // no fit without it
     {

@@ -238,14 +238,14 @@ GivenLengths readLengths(const std::string& path, const std::string& matchesPath
                 throw Failure(table.where(row) + format(": the length between '%s' and '%s' is in line %d already",
                                                         matches.names[pair.first].text().c_str(),
                                                         matches.names[pair.second].text().c_str(), first.first->second));
-            lengths.list.push_back({pair.first, pair.second, length, std, object});
+            lengths.list.push_back({pair.first, pair.second, length, std, object, row.line});
         }
     }
     lengths.objects = (int)objects.size();
     return lengths;
 }
 
-double GivenLengths::commonStd() const
+double GivenLengths::leastStd() const
 {
     double least = 0.;
     for (const GivenLength& l : list)
@@ -253,16 +253,24 @@ double GivenLengths::commonStd() const
     return least;
 }
 
-std::vector<cv::Vec4d> GivenLengths::rows() const
+double GivenLengths::commonStd() const { return std::hypot(leastStd(), factorStd); }
+
+std::vector<int> GivenLengths::rowsOfObjects() const
 {
-    const double OF_MOMENT = 1./20.;
     std::vector<int> times(objects, 0);
     for (const GivenLength& l : list)
         times[l.object]++;
+    return times;
+}
+
+std::vector<cv::Vec4d> GivenLengths::rows() const
+{
+    const double OF_MOMENT = 1./20., least = leastStd();
+    const std::vector<int> times = rowsOfObjects();
     std::vector<cv::Vec4d> result;
     for (const GivenLength& l : list)
     {
-        const double beyond = std::max(l.std*l.std - std::pow(commonStd()*l.length, 2), 0.);
+        const double beyond = std::max(l.std*l.std - std::pow(least*l.length, 2), 0.);
         result.push_back({(double)l.a, (double)l.b, l.length, std::sqrt(beyond*times[l.object] + std::pow(OF_MOMENT*l.std, 2))});
     }
     return result;

@@ -42,18 +42,24 @@ struct GivenLength
     int a, b;                       //!< of Matches::names
     double length, std;             //!< as given
     int object;                     //!< rows with equal numbers are one object, which has one error at all times
+    int line = 0;                   //!< of its table
 };
 
 struct GivenLengths
 {
     std::vector<GivenLength> list;
     int objects = 0;
+    double factorStd = 0.;          //!< relative, of a factor that all may share beside their own errors
 
     /** The relative error that all lengths share at the least: more moments do not average that of one wand. */
     double commonStd() const;
     /** As refractiveBundleAdjust takes them beside that error. An object's error beyond it counts once, however many moments
     there are; by itself, each moment has a twentieth (the wand bends, its marks turn). */
     std::vector<cv::Vec4d> rows() const;
+    std::vector<int> rowsOfObjects() const;     //!< how many
+
+private:
+    double leastStd() const;
 };
 
 //! Some of the points, with those that lengths lead to, to try what fits; the others are seen by no camera.

@@ -245,6 +245,17 @@ int unknownOfPoses(const SurveyStart& start, const SurveyAdjustment& result)
     return unknown;
 }
 
+void setPlaces(const SurveyStart& start, SurveyAdjustment& result)
+{
+    for (const auto& position : start.positions)
+        if (result.hasPose(position.first))
+        {
+            const Vec3d place = result.centreOf(position.first), off = place - position.second.center;
+            result.bundle.places[position.first] = place;
+            result.bundle.squaredKnown += off.dot(off)/(position.second.std*position.second.std);
+        }
+}
+
 } // namespace
 
 Matx33d SurveyAdjustment::centreCovariance(int view) const
@@ -293,6 +304,8 @@ SurveyAdjustment adjustSurvey(const Survey& survey, const BundleStart& bundle, c
     setAngles(survey, result);
     result.scaleStd = start.positions.empty() ? scaleStdByViews(result) : scaleStdByPositions(start, result);
     setNoise(bundle, start.lengths, squares, unknownOfPoses(start, result), result.bundle);
+    setPlaces(start, result);
+    result.bundle.used = {result.used};
     return result;
 }
 

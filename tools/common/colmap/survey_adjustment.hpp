@@ -6,17 +6,11 @@
 
 #include "bundle/bundle_adjustment.hpp"
 #include "bundle/bundle_start.hpp"
+#include "bundle/measures.hpp"
 #include "colmap/survey.hpp"
 #include <map>
 
 namespace tools {
-
-//! Where a camera was, from outside.
-struct KnownPosition
-{
-    cv::Vec3d center;
-    double std;                 //!< of each coordinate
-};
 
 //! What the adjustment of a survey starts from. Its frame is that of the model, or of the positions, less `origin`.
 struct SurveyStart

@@ -9,6 +9,7 @@
 #include "console/table.hpp"
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <ostream>
 #include <sstream>
 
@@ -290,6 +291,48 @@ void printSurvey(std::ostream& out, const SurveyResult& result)
         out << fittedLine("hardly determined: ", result.findings.weak) << "\n";
 }
 
+//! What has no answer starts where it did.
+static void startAt(const SurveyAdjustment& found, SurveyStart& start)
+{
+    for (size_t i = 0; i < start.points.size(); i++)
+        if (std::isfinite(found.bundle.points[i].x))
+            start.points[i] = found.bundle.points[i];
+    for (int view = 0; view < (int)start.rvecs.size(); view++)
+        if (found.hasPose(view))
+        {
+            start.rvecs[view] = found.rvecs[view];
+            start.tvecs[view] = found.tvecs[view];
+        }
+}
+
+//! @param pixels all that are seen; the survey of the result keeps those that are adjusted
+static MeasuredBundle measuredBundle(const SurveyOptions& options, const BundleStart& start, const std::vector<Point2d>& pixels, bool quiet,
+                                     SurveyResult& result)
+{
+    MeasuredBundle measured;
+    measured.measures = {result.start.lengths, result.start.positions};
+    measured.lengthsPath = options.lengths;
+    measured.positionsPath = options.positions;
+    measured.points.resize(1);
+    for (const Vec3i& observation : result.survey.observations)
+        measured.points[0].push_back(observation[2]);
+    const auto from = std::make_shared<SurveyStart>(result.start);
+    measured.adjust = [&, quiet, from](const Measures& measures, const std::vector<std::vector<uchar>>* only) {
+        const double NO_MEMORY = 1e-9;          // no +- of views are needed
+        from->lengths = measures.lengths;
+        from->positions = measures.positions;
+        result.survey.pixels = pixels;
+        for (size_t i = 0; only && i < pixels.size(); i++)
+            if (!(*only)[0][i])
+                result.survey.pixels[i] = Point2d(NAN, NAN);
+        const SurveyAdjustment found = adjustSurvey(result.survey, start, *from, !only && options.robust, NO_MEMORY, quiet);
+        if (!only)
+            startAt(found, *from);              // what comes after is near it
+        return found.bundle;
+    };
+    return measured;
+}
+
 SurveyResult adjustColmap(const SurveyOptions& options, const BundleStart& start, const std::string& unit, bool quiet)
 {
     SurveyResult result;
@@ -303,7 +346,11 @@ SurveyResult adjustColmap(const SurveyOptions& options, const BundleStart& start
         if (!result.adjustment.hasPose(view))
             result.survey.leaveOut(view);
     const auto bundle = [&](const BundleStart& from) { return adjusted(from).bundle; };
-    result.findings = findingsOf(start, result.start.lengths, result.adjustment.bundle, bundle, options.pixelSigma, options.maxRms);
+    const std::vector<Point2d> pixels = result.survey.pixels;
+    const MeasuredBundle measured = measuredBundle(options, start, pixels, quiet, result);
+    result.findings = findingsOf(start, result.start.lengths, result.adjustment.bundle, bundle, options.pixelSigma, options.maxRms,
+                                 result.start.isScaleOfWindow ? nullptr : &measured);
+    result.survey.pixels = pixels;
     checkPlaces(start, bundle, result.findings);
     result.findings.scale = scaleText(result.start, result.adjustment);
     if (result.start.isScaleOfWindow && !(result.adjustment.scaleStd <= VAGUE))

@@ -218,7 +218,8 @@ static std::map<int, KnownPosition> readPositions(const std::string& path, const
         if (survey.cameraOf[image->second] > 0)
             throw Failure(table.where(row) + format(": image '%s' is of camera %d; give positions of camera 1", name.c_str(),
                                                     survey.cameraOf[image->second] + 1));
-        const KnownPosition position = {{table.number(row, "x"), table.number(row, "y"), table.number(row, "z")}, table.number(row, "std")};
+        const Vec3d center(table.number(row, "x"), table.number(row, "y"), table.number(row, "z"));
+        const KnownPosition position = {center, table.number(row, "std"), row.line};
         if (!(position.std > 0))
             throw Failure(table.where(row) + format(": std is %g; it must be more than 0", position.std));
         if (!positions.insert({survey.viewOf[image->second], position}).second)
