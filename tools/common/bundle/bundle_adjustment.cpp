@@ -71,12 +71,11 @@ double squaredPrior(const BundleStart& start, const RigModel& rig)
 }
 
 //! The same of the lengths, with the best of the error that all share.
-double squaredLengths(const GivenLengths& lengths, const std::vector<Point3d>& points, int& count)
+double squaredLengths(const GivenLengths& lengths, const std::vector<Point3d>& points)
 {
     const std::vector<Vec4d> rows = lengths.rows();
     const double common = lengths.commonStd();
     double squares = 0., cross = 0., weight = 1./(common*common);
-    count = 0;
     for (const Vec4d& row : rows)
     {
         const double found = norm(points[(int)row[0]] - points[(int)row[1]]);
@@ -86,27 +85,8 @@ double squaredLengths(const GivenLengths& lengths, const std::vector<Point3d>& p
         squares += residual*residual;
         cross += residual*byScale;
         weight += byScale*byScale;
-        count++;
     }
-    return count ? squares - cross*cross/weight : 0.;
-}
-
-//! How many numbers are known beforehand: of directions and of a tube's centre two, of a shared window once.
-int countKnown(const BundleStart& start)
-{
-    if (start.covariance.empty())
-        return 0;
-    int count = 0;
-    const auto isKnown = [&](int i) { return start.covariance.at<double>(i, i) > 0; };
-    for (int i = extrinsicsColumn(start.rig, 1); i < start.covariance.rows; i++)
-        count += isKnown(i);
-    for (int c = 0; c < (int)start.rig.cameras.size(); c++)
-    {
-        const ParameterColumns at = columnsOf(start.rig, c);
-        for (int i = at.lens; i < (start.rig.ownsWindow(c) ? at.end : at.window); i++)
-            count += isKnown(i) && !followsOthers(start.rig.cameras[c]->window(), at, i);
-    }
-    return count;
+    return squares - cross*cross/weight;
 }
 
 void setPoints(const Matches& matches, const Mat& points3D, const Mat& deviations, const std::vector<Mat>& inliers,
@@ -195,18 +175,18 @@ void adjustOrExplain(const std::function<void()>& adjust)
     }
 }
 
-void setNoise(const BundleStart& start, const GivenLengths& lengths, double squaredPixels, int unknownPoses, BundleAdjustment& result)
+void setResult(const BundleAdjustResult& found, Fit& fit)
 {
-    Fit& fit = result.fit;
-    int lengthCount = 0;
-    const double ofLengths = lengths.list.empty() ? 0. : squaredLengths(lengths, result.points, lengthCount);
-    const double ofPrior = squaredPrior(start, fit.rig);
-    const int free = (int)(estimatedWindowParameters(fit).size() + estimatedRigParameters(fit).size());
-    fit.dof = 2.*result.usedPixels + lengthCount + countKnown(start) - 3.*result.answers() - unknownPoses - free;
-    result.squaredPixels = squaredPixels;
-    result.squaredKnown = ofLengths + ofPrior;
-    const double left = fit.dof - result.squaredKnown;
-    fit.sigma = std::sqrt(squaredPixels/std::max(left, 1.));
+    fit.rms = found.rms;
+    fit.sigma = found.pixelStd;
+    fit.dof = found.degreesOfFreedom;
+    fit.stdDeviations = found.stdDeviations;
+    fit.covariance = found.covariance;
+}
+
+double squaredKnown(const BundleStart& start, const GivenLengths& lengths, const BundleAdjustment& result)
+{
+    return squaredPrior(start, result.fit.rig) + (lengths.list.empty() ? 0. : squaredLengths(lengths, result.points));
 }
 
 int BundleAdjustment::answers() const
@@ -247,15 +227,12 @@ BundleAdjustment adjustBundle(const BundleStart& start, const Matches& matches, 
         found = refractiveBundleAdjust(pixels, fit.rig.cameras, fit.rig.windows, Rs, Ts, noArray(), noArray(), points3D, lengths.rows(),
                                        options);
     });
-    fit.rms = found.rms;
-    fit.stdDeviations = found.stdDeviations;
-    fit.covariance = found.covariance;
+    setResult(found, fit);
     for (int c = 1; c < matches.cameraCount(); c++)
         fit.rig.extrinsics[c] = {Rs[c], Ts[c]};
     setPoints(matches, points3D, found.pointDeviations, found.inliers, result);
-    double squaredPixels;
-    result.rmsOfCamera = rmsOfCameras(matches, result, squaredPixels);
-    setNoise(start, lengths, squaredPixels, 0, result);
+    result.rmsOfCamera = rmsOfCameras(matches, result, result.squaredPixels);
+    result.squaredKnown = squaredKnown(start, lengths, result);
     return result;
 }
 

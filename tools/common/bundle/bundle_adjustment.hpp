@@ -38,10 +38,11 @@ BundleAdjustment adjustBundle(const BundleStart& start, const Matches& matches, 
 /** Runs what adjusts. Throws Failure that says what was found, then what to do here. */
 void adjustOrExplain(const std::function<void()>& adjust);
 
-/** The standard deviation of a usual pixel, and the degrees of freedom that tell it; lengths and what was known are equations, too.
-@param squaredPixels of all that are used, each over its relative variance
-@param unknownPoses numbers that say where views are, beside what is known of them */
-void setNoise(const BundleStart& start, const GivenLengths& lengths, double squaredPixels, int unknownPoses, BundleAdjustment& result);
+//! What the library tells beside the rig, poses and points.
+void setResult(const cv::refract::BundleAdjustResult& found, Fit& fit);
+
+//! BundleAdjustment::squaredKnown, without that of positions.
+double squaredKnown(const BundleStart& start, const GivenLengths& lengths, const BundleAdjustment& result);
 
 //! As a file of it, with the label of the start; without its unit.
 Calibration toFile(const BundleAdjustment& adjustment, const Calibration& start);

@@ -68,9 +68,7 @@ void adjust(const Survey& survey, const BundleStart& bundle, const SurveyStart& 
                           + "; leave it out of the model, or its wrong points");
         }
     });
-    fit.rms = found.rms;
-    fit.stdDeviations = found.stdDeviations;
-    fit.covariance = found.covariance;
+    setResult(found, fit);
     result.viewCovariances = found.viewCovariances;
     result.used = found.inliers[0];
     deviations = found.pointDeviations;
@@ -235,16 +233,6 @@ double scaleStdByPositions(const SurveyStart& start, const SurveyAdjustment& res
     return 1./std::sqrt(information);
 }
 
-//! Beside the frame, or positions.
-int unknownOfPoses(const SurveyStart& start, const SurveyAdjustment& result)
-{
-    int unknown = start.positions.empty() ? -6 : 0;
-    for (int view = 0; view < (int)result.rvecs.size(); view++)
-        if (result.hasPose(view))
-            unknown += start.positions.count(view) ? 3 : 6;
-    return unknown;
-}
-
 void setPlaces(const SurveyStart& start, SurveyAdjustment& result)
 {
     for (const auto& position : start.positions)
@@ -300,10 +288,10 @@ SurveyAdjustment adjustSurvey(const Survey& survey, const BundleStart& bundle, c
         result.arePointsAlone |= result.hasPose((int)view) && std::isnan(result.viewCovariances[view].at<double>(0, 0));
     loseDoubtfulViews(survey, result);
     setPoints(survey, points, deviations, result);
-    const double squares = setErrors(survey, result);
+    result.bundle.squaredPixels = setErrors(survey, result);
     setAngles(survey, result);
     result.scaleStd = start.positions.empty() ? scaleStdByViews(result) : scaleStdByPositions(start, result);
-    setNoise(bundle, start.lengths, squares, unknownOfPoses(start, result), result.bundle);
+    result.bundle.squaredKnown = squaredKnown(bundle, start.lengths, result.bundle);
     setPlaces(start, result);
     result.bundle.used = {result.used};
     return result;
