@@ -149,7 +149,7 @@ TEST_CASE("Right lengths and positions of many rigs are believed", "[.monte-carl
 {
     const char* const WHICH[] = {"", "lengths", "positions", "lengths and positions"};
     std::map<std::string, Count> counts;
-    overRigs(5000, scenes::trials(15), [&](const TemporaryFolder& f, int cameras) {
+    overRigs(5000, scenes::trials(5), [&](const TemporaryFolder& f, int cameras) {
         for (const int which : {1, 2, 3})
         {
             const ToolResult result = survey(f, optionsFor(f, cameras, which & 1, which & 2));
@@ -157,14 +157,18 @@ TEST_CASE("Right lengths and positions of many rigs are believed", "[.monte-carl
         }
     });
     for (const auto& count : counts)
+    {
         std::printf("[numbers] right, %s: %d runs, %d refused, %d named, %d failed\n", count.first.c_str(), count.second.runs,
                     count.second.refused, count.second.named, count.second.failed);
+        CAPTURE(scenes::seed(), count.first);
+        CHECK(count.second.refused == 0);
+    }
 }
 
 TEST_CASE("Wrong lengths and positions of many rigs are named", "[.monte-carlo][measures]")
 {
     std::map<std::string, Count> counts;
-    overRigs(6000, scenes::trials(3), [&](const TemporaryFolder& f, int cameras) {
+    overRigs(6000, scenes::trials(1), [&](const TemporaryFolder& f, int cameras) {
         const Table lengths = readTable(f / "lengths.csv"), positions = readTable(f / "positions.csv");
         for (const Mistake& mistake : MISTAKES)
         {
@@ -182,7 +186,15 @@ TEST_CASE("Wrong lengths and positions of many rigs are named", "[.monte-carlo][
             }
         }
     });
+    int runs = 0, named = 0;
     for (const auto& count : counts)
+    {
         std::printf("[numbers] %s: %d runs, %d refused, %d named, %d failed\n", count.first.c_str(), count.second.runs,
                     count.second.refused, count.second.named, count.second.failed);
+        CAPTURE(scenes::seed(), count.first);
+        CHECK(count.second.refused + count.second.failed == count.second.runs);
+        runs += count.second.runs - count.second.failed;
+        named += count.second.named;
+    }
+    CHECK(3*named > 2*runs);
 }
