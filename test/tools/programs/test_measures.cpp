@@ -101,7 +101,7 @@ struct Count
 
 } // namespace
 
-TEST_CASE("Wrong lengths and positions of a survey are named, right ones are believed", "[tools][bundle][colmap]")
+TEST_CASE("Wrong lengths and positions of a survey are named, right ones are believed", "[tools][bundle][colmap][slow]")
 {
     const int cameras = GENERATE(1, 2);
     Network network(780 + cameras, cameras);
