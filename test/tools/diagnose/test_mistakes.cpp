@@ -403,14 +403,3 @@ TEST_CASE("Of right images and values no cause is named", "[mistakes][slow]")
         }
     std::cout << "[numbers] right images: a cause is named in " << named << " of " << RIG_KINDS*trials << std::endl;
 }
-
-TEST_CASE("Tails of chi squared", "[mistakes]")
-{
-    // R: pchisq(x, k, lower.tail = FALSE)
-    CHECK(upperTailChiSquared(1, 3.841458820694124) == Approx(0.05).epsilon(1e-9));
-    CHECK(upperTailChiSquared(2, 5.991464547107979) == Approx(0.05).epsilon(1e-9));
-    CHECK(upperTailChiSquared(3, 7.814727903251179) == Approx(0.05).epsilon(1e-9));
-    CHECK(upperTailChiSquared(6, 12.591587243743977) == Approx(0.05).epsilon(1e-9));
-    CHECK(upperTailChiSquared(6, 0.) == 1.);
-    CHECK(upperTailChiSquared(1, 36.) == Approx(1.973175290075e-9).epsilon(1e-6));
-}

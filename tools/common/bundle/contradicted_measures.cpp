@@ -66,19 +66,6 @@ void setFree(const Hypothesis& freed, Measures& measures)
             position.second.std = std::max(position.second.std, ALONE*spread);
 }
 
-//! The normal's, of which so much is as rare.
-double deviationsOf(double squares, int count)
-{
-    if (count == 1 || squares <= count)
-        return std::sqrt(std::max(0., squares - (count - 1)));
-    const double tail = upperTailChiSquared(count, squares), half = squares/2.;
-    const double rarity = tail > 1e-290 ? -std::log(tail) : half - (count/2. - 1.)*std::log(half) + std::lgamma(count/2.);
-    double z = std::sqrt(2.*std::max(rarity, 1.));
-    for (int i = 0; i < 5; i++)
-        z = std::sqrt(2.*std::max(rarity - std::log(std::max(z, 1.)*std::sqrt(CV_PI/2.)), 0.));
-    return z;
-}
-
 double foundLength(const GivenLength& length, const BundleAdjustment& adjustment)
 {
     return norm(adjustment.points[length.a] - adjustment.points[length.b]);     // NaN: a point has no answer
@@ -242,7 +229,7 @@ public:
         if (areRepeated)
         {
             const Freed factor = freedOf({{Hypothesis::FACTOR, 0, 1, factorOf(lengths, comparison_.vague())}});
-            if (deviationsOf(given_ - factor.cost, 1) > MANY)
+            if (zScoreOfChiSquared(1, given_ - factor.cost) > MANY)
                 return said(factor.what[0], factor.adjustment, given_ - factor.cost);
         }
         if (!lengths.list.empty() && !areRepeated)
@@ -257,7 +244,7 @@ public:
     }
 
 private:
-    bool isExplained(double cost) const { return std::isfinite(cost) && !(deviationsOf(cost - least_, count_) > SOME); }
+    bool isExplained(double cost) const { return std::isfinite(cost) && !(zScoreOfChiSquared(count_, cost - least_) > SOME); }
 
     Freed freedOf(const std::vector<Hypothesis>& what) const
     {
@@ -273,7 +260,7 @@ private:
 
     std::string said(const Hypothesis& one, const BundleAdjustment& adjustment, double gain) const
     {
-        return textOf(one, bundle_, adjustment) + format(" (%.0f standard deviations)", deviationsOf(gain, one.count));
+        return textOf(one, bundle_, adjustment) + format(" (%.0f standard deviations)", zScoreOfChiSquared(one.count, gain));
     }
 
     std::string textOfLengths(const Freed& whole) const
@@ -281,7 +268,7 @@ private:
         if (whole.what[0].count > 1 && suspectsOf(whole).empty())
         {
             const Freed factor = freedOf({{Hypothesis::FACTOR, 0, 1, factorOf(bundle_.measures.lengths, whole.adjustment)}});
-            if (!(deviationsOf(factor.cost - least_, count_) > MANY) && deviationsOf(given_ - factor.cost, 1) > MANY)
+            if (!(zScoreOfChiSquared(count_, factor.cost - least_) > MANY) && zScoreOfChiSquared(1, given_ - factor.cost) > MANY)
                 return said(factor.what[0], factor.adjustment, given_ - factor.cost);
         }
         return textOfSingles(whole);
@@ -305,7 +292,7 @@ private:
     {
         const size_t MORE = 2;
         const double gain = given_ - whole.cost;
-        const std::string ofAll = deviationsOf(gain, whole.what[0].count) > MANY ? said(whole.what[0], whole.adjustment, gain) : "";
+        const std::string ofAll = zScoreOfChiSquared(whole.what[0].count, gain) > MANY ? said(whole.what[0], whole.adjustment, gain) : "";
         const std::vector<Hypothesis> singles = singlesOf(whole.what[0].kind, bundle_.measures, whole.adjustment);
         const size_t first = std::max<size_t>(1, suspectsOf(whole).size());
         for (size_t count = first; count <= first + MORE && (count == 1 || 2*count <= singles.size()); count++)
@@ -328,7 +315,7 @@ private:
                 if (other.which != one.which)
                     others.push_back(other);
             const double gain = (others.empty() ? given_ : freedOf(others).cost) - freed.cost;
-            if (std::isinf(gain) || deviationsOf(gain, one.count) > MANY)
+            if (std::isinf(gain) || zScoreOfChiSquared(one.count, gain) > MANY)
                 text += (text.empty() ? "" : "; ") + said(one, freed.adjustment, std::min(gain, 1e6));
         }
         return text;

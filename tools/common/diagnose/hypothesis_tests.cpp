@@ -105,20 +105,6 @@ Trial tried(const RigData& data, const RigOptions& options, const Fit& fit, cons
     return trial;
 }
 
-//! So many standard deviations of one number have this probability.
-double deviationsOf(double deviance, int parameters)
-{
-    if (parameters == 1)
-        return std::sqrt(std::max(0., deviance));
-    const double tail = upperTailChiSquared(parameters, deviance);
-    double low = 0., high = std::sqrt(std::max(0., deviance));
-    if (!(tail > 1e-280))               // too far out to tell apart
-        return high;
-    for (int i = 0; i < 60; i++)
-        (upperTailChiSquared(1, 0.25*(low + high)*(low + high)) > tail ? low : high) = 0.5*(low + high);
-    return low;
-}
-
 //! All, for the noise that the best of them leaves. @param single px, the noise of images by themselves
 Trial triedAll(const RigData& data, const RigOptions& options, const Fit& fit, const std::vector<Cause>& causes, double& single)
 {
@@ -201,7 +187,7 @@ std::vector<Contradiction> testGivenValues(const RigData& data, const RigOptions
             isSure = probability < SURE;
             sigma = trial.noise*std::sqrt(t.chiSquare/std::max(1., trial.dof - t.parameters));
         }
-        text += (text.empty() ? "" : "; or ") + t.cause->sentence(t.found, deviationsOf(deviance, t.parameters));
+        text += (text.empty() ? "" : "; or ") + t.cause->sentence(t.found, zScoreOfChiSquared(t.parameters, deviance));
     }
     if (text.empty())
         return {};

@@ -49,23 +49,45 @@ private:
     double a_, b_ = 0., sum_ = 0., logTerm_, logRest_;
 };
 
+//! Beyond 25 by its asymptotic series (Abramowitz and Stegun, 7.1.23), to 1e-10; erfc itself is zero beyond 27.
+double logErfc(double x)
+{
+    if (x < 25.)
+        return std::log(std::erfc(x));
+    const double square = x*x;
+    return -square - std::log(x*std::sqrt(CV_PI)) + std::log1p((-1./2. + (3./4. - 15./8./square)/square)/square);
+}
+
 } // namespace
 
-double upperTailChiSquared(int dof, double x)
+double upperTailChiSquared(int dof, double x) { return std::exp(logUpperTailChiSquared(dof, x)); }
+
+double logUpperTailChiSquared(int dof, double x)
 {
     if (!(x > 0.))
-        return 1.;
+        return 0.;
     // exp(-x/2) times the sum of (x/2)^a / Gamma(a + 1) for a = 0, 1, ... below dof/2; of odd dof a = 1/2, 3/2, ... and erfc.
     const double half = 0.5*x;
     const bool odd = dof % 2 != 0;
-    double sum = odd ? std::erfc(std::sqrt(half)) : 0.;
-    double logTerm = odd ? 0.5*std::log(half) - 0.5*std::log(0.25*std::acos(-1.)) : 0.;     // Gamma(3/2) = sqrt(pi)/2
+    double logSum = odd ? logErfc(std::sqrt(half)) : -HUGE_VAL;
+    double logTerm = (odd ? 0.5*std::log(half) - std::log(0.5*std::sqrt(CV_PI)) : 0.) - half;     // Gamma(3/2) = sqrt(pi)/2
     for (double a = odd ? 0.5 : 0.; a < 0.5*dof - 0.25; a += 1.)
     {
-        sum += std::exp(logTerm - half);
+        logSum = std::max(logSum, logTerm) + std::log1p(std::exp(-std::fabs(logSum - logTerm)));
         logTerm += std::log(half/(a + 1.));
     }
-    return std::min(1., sum);
+    return std::min(0., logSum);
+}
+
+double zScoreOfChiSquared(int dof, double x)
+{
+    double low = 0., high = std::sqrt(std::max(0., x));
+    if (dof == 1 || !std::isfinite(x))
+        return high;
+    const double logTail = logUpperTailChiSquared(dof, x);
+    for (int i = 0; i < 60; i++)
+        (logUpperTailChiSquared(1, 0.25*(low + high)*(low + high)) > logTail ? low : high) = 0.5*(low + high);
+    return low;
 }
 
 double upperTailF(int m, double v, double x) { return upperTailAnyF(2*m, v, x); }

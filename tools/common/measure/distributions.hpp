@@ -10,6 +10,12 @@ namespace tools {
 //! P(chi^2 > x) of so many degrees of freedom, a finite sum; 1 for x <= 0.
 double upperTailChiSquared(int dof, double x);
 
+//! Its logarithm, where it is too small for a number, too.
+double logUpperTailChiSquared(int dof, double x);
+
+//! The z-score that is as rare, both tails taken: P(|z| > score) = P(chi^2 > x). The root of x for one degree of freedom.
+double zScoreOfChiSquared(int dof, double x);
+
 /** P(F > x) with 2m and v degrees of freedom, a finite sum:
 
     P(F > x) = w^(v/2) sum over j < m of (v/2)_j / j! (1 - w)^j,     w = 1 / (1 + 2 m x / v)
