@@ -4,7 +4,7 @@
 #include "bundle/bundle_output.hpp"
 #include "bundle/matches.hpp"
 #include "bundle/bundle_findings.hpp"
-#include "bundle/exchanged_cameras.hpp"
+#include "bundle/mistaken_matches.hpp"
 #include "bundle/moments.hpp"
 #include "calibrate/units.hpp"
 #include "colmap/survey_output.hpp"
@@ -262,8 +262,12 @@ BundleFindings examine(const Options& o, const Calibration& file, const Matches&
     const auto adjust = [&](const BundleStart& from) { return adjustBundle(from, matches, lengths, o.robust); };
     const MeasuredBundle measured = measuredBundle(o, matches, lengths, start);
     BundleFindings findings = findingsOf(start, lengths, adjustment, adjust, knownSigma, o.maxRms, &measured);
-    std::string mistake = lateCamera(start, matches, lengths, o.robust, adjustment.fit.sigma, knownSigma);
-    if (mistake.empty() && !findings.contradictions.empty())
+    const bool areNoisy = isNoisy(findings.pixelStd, knownSigma);
+    std::string mistake = areNoisy && !o.robust ? wrongMatches(start, matches, lengths, knownSigma) : "";
+    if (mistake.empty() && areNoisy)
+        mistake = lateCamera(start, matches, lengths, o.robust, adjustment.fit.sigma);
+    // Pixels that fit without the measures are those of the cameras they are given for.
+    if (mistake.empty() && !findings.contradictions.empty() && (areNoisy || !findings.areMeasuresWrong))
         mistake = exchangedCameras(start, matches, lengths, o.robust, knownSigma);
     if (!mistake.empty())
     {

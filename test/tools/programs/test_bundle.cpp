@@ -123,6 +123,8 @@ TEST_CASE("refract_bundle leaves wrong matches out and names them", "[tools][bun
     CAPTURE(all.out, all.err);
     CHECK(all.code == 2);
     CHECK(mentions(all.err, "limit not met"));
+    CHECK(mentions(all.err, "pixels are wrong ('m10 a'): all others fit"));
+    CHECK(mentions(all.err, "leave out --no-robust"));
 }
 
 TEST_CASE("refract_bundle names the camera whose pixels are of other moments, before any fit", "[tools][bundle]")

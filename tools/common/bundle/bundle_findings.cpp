@@ -183,9 +183,10 @@ BundleFindings findingsOf(const BundleStart& start, const GivenLengths& lengths,
     const double FEW = 60.;
     if (fit.dof < FEW)
         findings.weak.push_back("so few data (every +- may be 1.4 times larger)");
-    const std::string ofMeasures = measured ? contradictionOf(*measured, adjustment) : "";
-    findings.areMeasuresWrong = !ofMeasures.empty();
-    const std::string contradiction = findings.areMeasuresWrong ? ofMeasures : contradictionOf(start, adjustment, adjust);
+    const ContradictedMeasures measures = measured ? contradictedMeasures(*measured, adjustment) : ContradictedMeasures();
+    findings.areMeasuresWrong = !measures.sentence.empty();
+    findings.pixelStd = findings.areMeasuresWrong ? measures.pixelStd : fit.sigma;
+    const std::string contradiction = findings.areMeasuresWrong ? measures.sentence : contradictionOf(start, adjustment, adjust);
     if (!contradiction.empty())
         findings.contradictions.push_back(contradiction);
     findFarSteps(start, findings);

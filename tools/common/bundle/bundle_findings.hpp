@@ -34,6 +34,7 @@ struct BundleFindings
     std::vector<std::string> weak;      //!< estimated, but hardly determined: name = value +- std
     std::vector<std::string> contradictions;    //!< what was known of the start, and is so no longer; a sentence each
     bool areMeasuresWrong = false;      //!< the first contradiction is of lengths or positions
+    double pixelStd = 0.;               //!< px of a coordinate; where measures are wrong, without them
     double maxRms = 0.;                 //!< the limit; 0: none
     bool limitMet = true;
 

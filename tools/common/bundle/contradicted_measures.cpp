@@ -219,6 +219,8 @@ public:
           least_(comparison_.costOf(comparison_.vague())),
           count_((int)bundle.measures.lengths.list.size() + 3*(int)bundle.measures.positions.size()) {}
 
+    double pixelStd() const { return comparison_.vague().fit.sigma; }
+
     std::string text() const
     {
         if (isExplained(given_))
@@ -329,19 +331,22 @@ private:
 
 } // namespace
 
-std::string contradictionOf(const MeasuredBundle& bundle, const BundleAdjustment& adjustment)
+ContradictedMeasures contradictedMeasures(const MeasuredBundle& bundle, const BundleAdjustment& adjustment)
 {
     if (bundle.measures.lengths.list.empty() && bundle.measures.positions.empty())
-        return "";
+        return {};
     try
     {
-        const std::string text = Snooping(bundle, adjustment).text();
-        return text.empty() ? text : text + ": correct it or leave it out; until then pixels that are called wrong may be right, and "
-                                            "windows are bent";
+        const Snooping snooping(bundle, adjustment);
+        const std::string text = snooping.text();
+        if (text.empty())
+            return {};
+        return {text + ": correct it or leave it out; until then pixels that are called wrong may be right, and windows are bent",
+                snooping.pixelStd()};
     }
     catch (const Failure&)              // nothing else tells what they say
     {
-        return "";
+        return {};
     }
 }
 

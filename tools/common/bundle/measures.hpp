@@ -33,9 +33,14 @@ struct MeasuredBundle
     std::function<BundleAdjustment(const Measures& measures, const std::vector<std::vector<uchar>>* only)> adjust;
 };
 
-/** Which of the measures contradict the rest, a sentence; empty: none does.
-@param adjustment with the measures as they are given */
-std::string contradictionOf(const MeasuredBundle& bundle, const BundleAdjustment& adjustment);
+struct ContradictedMeasures
+{
+    std::string sentence;       //!< which contradict the rest; empty: none does
+    double pixelStd = 0.;       //!< px of a coordinate, by a fit to which measures say next to nothing
+};
+
+//! @param adjustment with the measures as they are given
+ContradictedMeasures contradictedMeasures(const MeasuredBundle& bundle, const BundleAdjustment& adjustment);
 
 } // namespace tools
 

@@ -105,13 +105,16 @@ void requireSameMoments(const BundleStart& start, const Matches& matches)
         throw Failure(lateSentence(camera, late, "the middling point's rays miss each other by", before, best));
 }
 
-std::string lateCamera(const BundleStart& start, const Matches& matches, const GivenLengths& lengths, bool robust, double sigma,
-                       double knownSigma)
+bool isNoisy(double sigma, double knownSigma)
 {
-    const double SHARP = 0.25, NOISIER = 2., EXPLAINS = 0.5;        // px; of the known noise; of the noise of the fit
+    const double SHARP = 0.25, NOISIER = 2.;        // px; of the known noise
+    return !(sigma < (knownSigma > 0. ? NOISIER*knownSigma : SHARP));
+}
+
+std::string lateCamera(const BundleStart& start, const Matches& matches, const GivenLengths& lengths, bool robust, double sigma)
+{
+    const double EXPLAINS = 0.5;                    // of the noise of the fit
     const int ENOUGH_ITERATIONS = 100;
-    if (sigma < (knownSigma > 0. ? NOISIER*knownSigma : SHARP))
-        return "";
     std::string sentence;
     double least = EXPLAINS*sigma;
     const auto attempt = [&](int camera, int late) {

@@ -17,10 +17,12 @@ double missOf(const BundleStart& start, const RigPixels& pixels, int camera);
 some rows of the table. An adjustment to such matches creeps. Tables without images have no moments. */
 void requireSameMoments(const BundleStart& start, const Matches& matches);
 
+//! Whether a fit leaves more noise than matches of one moment do. @param knownSigma as of findingsOf
+bool isNoisy(double sigma, double knownSigma);
+
 /** The same after a fit to the matches, which bends a rig until it hides a good part of it: whether they fit far better after some rows.
-@param sigma of the fit @param knownSigma as of findingsOf @return a sentence; empty: no camera is late */
-std::string lateCamera(const BundleStart& start, const Matches& matches, const GivenLengths& lengths, bool robust, double sigma,
-                       double knownSigma);
+@param sigma of the fit @return a sentence; empty: no camera is late */
+std::string lateCamera(const BundleStart& start, const Matches& matches, const GivenLengths& lengths, bool robust, double sigma);
 
 } // namespace tools
 

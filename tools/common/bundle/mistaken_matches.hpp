@@ -1,8 +1,8 @@
 // This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
 // SPDX-License-Identifier: Apache-2.0
 
-#ifndef REFRACT_TOOLS_EXCHANGED_CAMERAS_HPP
-#define REFRACT_TOOLS_EXCHANGED_CAMERAS_HPP
+#ifndef REFRACT_TOOLS_MISTAKEN_MATCHES_HPP
+#define REFRACT_TOOLS_MISTAKEN_MATCHES_HPP
 
 #include "bundle/bundle_start.hpp"
 
@@ -13,6 +13,10 @@ the start, or contradict something that is right, or have no fit: so this asks w
 @param knownSigma as of findingsOf @return a sentence; empty: no exchange explains it */
 std::string exchangedCameras(const BundleStart& start, const Matches& matches, const GivenLengths& lengths, bool robust, double knownSigma);
 
+/** Whether wrong matches, which were all to be taken as right, are why nothing fits: whether the rest fits without them.
+@return a sentence; empty: it does not */
+std::string wrongMatches(const BundleStart& start, const Matches& matches, const GivenLengths& lengths, double knownSigma);
+
 } // namespace tools
 
-#endif // REFRACT_TOOLS_EXCHANGED_CAMERAS_HPP
+#endif // REFRACT_TOOLS_MISTAKEN_MATCHES_HPP
