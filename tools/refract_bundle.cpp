@@ -182,7 +182,7 @@ void explain(const Options& o, const Calibration& file, const Matches& matches, 
         options.free = free;
         const BundleStart freer = startWith(o, options, file);
         requireScale(freer, o.start, matches, lengths);
-        return adjustBundle(freer, matches, lengths, o.robust);
+        return adjustBundle(freer, matches, lengths, o.robust, ENOUGH_ITERATIONS);
     });
     findings.contradictions.back() += explanation.empty() ? "; no single name of --free explains it" : "; " + explanation + " (--free)";
 }
@@ -249,7 +249,7 @@ MeasuredBundle measuredBundle(const Options& o, const Matches& matches, const Gi
             for (size_t i = 0; i < matches.names.size(); i++)
                 if (!(*only)[c][i])
                     seen.pixels[c][i] = cv::Point2d(NAN, NAN);
-        return adjustBundle(start, seen, measures.lengths, !only && o.robust);
+        return adjustBundle(start, seen, measures.lengths, !only && o.robust, ENOUGH_ITERATIONS);
     };
     return measured;
 }
@@ -259,7 +259,7 @@ BundleFindings examine(const Options& o, const Calibration& file, const Matches&
                        const BundleStart& start, const BundleAdjustment& adjustment)
 {
     const double knownSigma = knownNoise(o, file, matches);
-    const auto adjust = [&](const BundleStart& from) { return adjustBundle(from, matches, lengths, o.robust); };
+    const auto adjust = [&](const BundleStart& from) { return adjustBundle(from, matches, lengths, o.robust, ENOUGH_ITERATIONS); };
     const MeasuredBundle measured = measuredBundle(o, matches, lengths, start);
     BundleFindings findings = findingsOf(start, lengths, adjustment, adjust, knownSigma, o.maxRms, &measured);
     const bool areNoisy = isNoisy(findings.pixelStd, knownSigma);

@@ -104,3 +104,26 @@ TEST_CASE("refract_bundle does not believe a rig that is far from its start", "[
     CHECK(mentions(result.out, "NOT USABLE"));
     CHECK(mentions(result.err, "R of camera 3 is 20"));
 }
+
+TEST_CASE("refract_bundle blames no lengths where the lenses are wrong", "[tools][bundle][exchanged]")
+{
+    for (double factor : {0.5, 0.7, 1.5, 2.})
+    {
+        const int cameras = factor < 1 ? 3 : 2;
+        Wand wand = wandOf(8500 + cameras, cameras, false);
+        for (Ptr<RefractiveCamera>& camera : wand.start.cameras)
+        {
+            Mat K = camera->cameraMatrix();
+            K.at<double>(0, 0) *= factor;
+            K.at<double>(1, 1) *= factor;
+            camera = RefractiveCamera::create(K, camera->distCoeffs(), camera->window());
+            camera->setImageSize(SIZE);
+        }
+        const TemporaryFolder f;
+        const ToolResult result = bundleOf(wand, false, f);
+        CAPTURE(scenes::seed(), factor, result.out, result.err);
+        CHECK(result.code == 2);
+        CHECK_FALSE(mentions(result.err, "the lengths of"));
+        CHECK_FALSE(mentions(result.err, "exchanged"));
+    }
+}

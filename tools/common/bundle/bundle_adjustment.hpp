@@ -31,6 +31,8 @@ struct BundleAdjustment
     std::vector<int> outliers() const;  //!< points with a pixel that no point explains
 };
 
+const int ENOUGH_ITERATIONS = 100;      // of a fit that asks what is wrong: a right start needs no more
+
 //! Throws Failure that says what the matches do not determine, or why there is no answer.
 BundleAdjustment adjustBundle(const BundleStart& start, const Matches& matches, const GivenLengths& lengths, bool robust,
                               int iterations = 1000);

@@ -103,24 +103,26 @@ bool isWeak(const EstimatedParameter& p, const RigModel& rig)
     return isOf(at.wedge, at.curvature - at.wedge) ? p.std > 3*ARC_MINUTE : p.std > 0.25*p.value;
 }
 
+const double FAR_DEG = 15., FAR_SHARE = 1./3.;      // of T
+
 /* A start is good to some degrees and per cent. What fits far from it may be another minimum, of matches that are not what they are given
-for. What is known of R and T has its contradictions. */
-void findFarSteps(const BundleStart& start, BundleFindings& findings)
+for. What is known of R and T has its contradictions.
+@param many standard deviations that a step may be long by itself */
+void findFarSteps(const BundleStart& start, double many, BundleFindings& findings)
 {
-    const double FAR_DEG = 15., FAR_SHARE = 1./3., MANY = 2.;
     double worst = 1.;
     std::string sentence;
     for (size_t c = 1; c < findings.corrections.size() && (start.flags & GLASS_FREE_EXTRINSICS); c++)
     {
         const Correction &R = findings.corrections[c].R, &T = findings.corrections[c].T;
         const double away = norm(start.rig.extrinsics[c].T);
-        const double far = std::max((R.by - MANY*R.std)/FAR_DEG, (T.by - MANY*T.std)/(FAR_SHARE*away));
+        const double far = std::max((R.by - many*R.std)/FAR_DEG, (T.by - many*T.std)/(FAR_SHARE*away));
         if (far <= worst)
             continue;
         worst = far;
         sentence = format("R of camera %zu is %.3g degrees from the start and T %.3g, where T is %.3g long: is the start good to some "
-                          "degrees and per cent, and are the cameras in its order? Else the matches fit at a wrong place", c + 1, R.by,
-                          T.by, away);
+                          "degrees and per cent, in the unit of the lengths, and are the cameras in its order? Else the matches fit at a "
+                          "wrong place", c + 1, R.by, T.by, away);
     }
     if (!sentence.empty())
         findings.contradictions.push_back(sentence);
@@ -158,6 +160,25 @@ void findNoise(const BundleAdjustment& adjustment, double knownSigma, BundleFind
                                                  100.*shareLeftOut(adjustment)));
 }
 
+std::vector<CameraCorrection> correctionsOf(const BundleStart& start, const Fit& fit)
+{
+    std::vector<CameraCorrection> corrections;
+    for (int c = 0; c < (int)fit.rig.cameras.size(); c++)
+        corrections.push_back(correctionOf(start, fit, c));
+    return corrections;
+}
+
+//! Whether the rest is as the start says. If not, measures need not be what is wrong.
+bool isSound(const BundleStart& start, const BundleAdjustment& rest, double knownSigma)
+{
+    BundleFindings findings;
+    findings.corrections = correctionsOf(start, rest.fit);
+    findFarSteps(start, 0., findings);         // not known, it is no sooner right
+    findNoise(rest, knownSigma, findings);
+    const auto isWindowFar = [&](const CameraCorrection& c) { return c.name == "normal" && c.place.by > FAR_DEG; };
+    return findings.contradictions.empty() && std::none_of(findings.corrections.begin(), findings.corrections.end(), isWindowFar);
+}
+
 } // namespace
 
 std::string BundleFindings::verdict() const
@@ -174,8 +195,7 @@ BundleFindings findingsOf(const BundleStart& start, const GivenLengths& lengths,
 {
     const Fit& fit = adjustment.fit;
     BundleFindings findings;
-    for (int c = 0; c < (int)fit.rig.cameras.size(); c++)
-        findings.corrections.push_back(correctionOf(start, fit, c));
+    findings.corrections = correctionsOf(start, fit);
     findings.scale = scaleOf(start, lengths, fit);
     for (const EstimatedParameter& p : estimatedWindowParameters(fit))
         if (isWeak(p, fit.rig))
@@ -184,12 +204,12 @@ BundleFindings findingsOf(const BundleStart& start, const GivenLengths& lengths,
     if (fit.dof < FEW)
         findings.weak.push_back("so few data (every +- may be 1.4 times larger)");
     const ContradictedMeasures measures = measured ? contradictedMeasures(*measured, adjustment) : ContradictedMeasures();
-    findings.areMeasuresWrong = !measures.sentence.empty();
-    findings.pixelStd = findings.areMeasuresWrong ? measures.pixelStd : fit.sigma;
+    findings.areMeasuresWrong = !measures.sentence.empty() && isSound(start, measures.rest, knownSigma);
+    findings.pixelStd = findings.areMeasuresWrong ? measures.rest.fit.sigma : fit.sigma;
     const std::string contradiction = findings.areMeasuresWrong ? measures.sentence : contradictionOf(start, adjustment, adjust);
     if (!contradiction.empty())
         findings.contradictions.push_back(contradiction);
-    findFarSteps(start, findings);
+    findFarSteps(start, 2., findings);
     if (!findings.areMeasuresWrong)     // else right pixels do not fit, either
         findNoise(adjustment, knownSigma, findings);
     findings.maxRms = maxRms;

@@ -219,7 +219,7 @@ public:
           least_(comparison_.costOf(comparison_.vague())),
           count_((int)bundle.measures.lengths.list.size() + 3*(int)bundle.measures.positions.size()) {}
 
-    double pixelStd() const { return comparison_.vague().fit.sigma; }
+    const BundleAdjustment& rest() const { return comparison_.vague(); }
 
     std::string text() const
     {
@@ -342,7 +342,7 @@ ContradictedMeasures contradictedMeasures(const MeasuredBundle& bundle, const Bu
         if (text.empty())
             return {};
         return {text + ": correct it or leave it out; until then pixels that are called wrong may be right, and windows are bent",
-                snooping.pixelStd()};
+                snooping.rest()};
     }
     catch (const Failure&)              // nothing else tells what they say
     {

@@ -36,7 +36,7 @@ struct MeasuredBundle
 struct ContradictedMeasures
 {
     std::string sentence;       //!< which contradict the rest; empty: none does
-    double pixelStd = 0.;       //!< px of a coordinate, by a fit to which measures say next to nothing
+    BundleAdjustment rest;      //!< to which measures say next to nothing
 };
 
 //! @param adjustment with the measures as they are given

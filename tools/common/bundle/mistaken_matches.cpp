@@ -14,7 +14,6 @@ namespace tools {
 
 namespace {
 
-const int ENOUGH_ITERATIONS = 100;                          // a right start needs no more
 const int MOST_TRIED = 6;                                   // of four cameras all
 
 struct Exchange

@@ -18,6 +18,7 @@ are tied to it, only the worst goes at a time, with those that cannot be told ap
 #include "adjust/joint_fit.hpp"
 #include "adjust/deletion.hpp"
 #include "adjust/minimize.hpp"
+#include "arrays/whitening.hpp"
 #include "math/robust_scale.hpp"
 #include <numeric>
 
@@ -248,13 +249,16 @@ FitOutcome JointFit::solveAndScale()
     return outcome;
 }
 
-//! Decides until the same observations stay.
+//! Decides until the same observations stay. Where one fit after the other comes to no end, neither does what is left.
 FitOutcome JointFit::rejectUntilStable()
 {
-    const int ROUNDS = 30;
+    const int ROUNDS = 30, MOST_ENDLESS = 3;
     FitOutcome outcome = solveAndScale();
-    for (int round = 0; round < ROUNDS && outcome.isUsable(); round++)
+    for (int round = 0, endless = 0; round < ROUNDS && outcome.isUsable(); round++)
     {
+        endless = outcome.status == FitOutcome::MAX_ITERATIONS ? endless + 1 : 0;
+        if (endless == MOST_ENDLESS)
+            break;
         Masks chosen = chooseInliers();
         if (chosen == inliers_)
             break;
@@ -269,8 +273,31 @@ FitOutcome JointFit::rejectUntilStable()
     return outcome;
 }
 
+//! How far apart the pixels of a camera are, whichever has them farthest; px of a coordinate.
+double JointFit::spread() const
+{
+    double largest = 0;
+    for (int camera = 0; camera < problem_.cameraCount(); camera++)
+    {
+        std::vector<double> x, y, distances;
+        for (const Image& image : images())
+            for (const Point2d& pixel : image.points.pixel)
+                if (image.camera == camera && isWhole(pixel))
+                {
+                    x.push_back(pixel.x);
+                    y.push_back(pixel.y);
+                }
+        const Point2d middle(median(x), median(y));
+        for (size_t i = 0; i < x.size(); i++)
+            distances.push_back(norm(Point2d(x[i], y[i]) - middle));
+        largest = std::max(largest, scaleOf(distances));
+    }
+    return largest;
+}
+
 FitOutcome JointFit::chooseFirstInliers()
 {
+    const double NOTHING = 0.2;         // of the spread, which one point for all would leave: what leaves so much explains next to nothing
     int inImages = 0;
     for (const Image& image : images())
         inImages += (int)image.points.pixel.size();
@@ -280,6 +307,8 @@ FitOutcome JointFit::chooseFirstInliers()
     if (!outcome.isUsable())
         return outcome;
     estimateScale();
+    if (problem_.hasScene() && scale_ > NOTHING*spread())
+        return checkMajority(0);        // it would creep for minutes, and come to nothing
     outliers_.leaveOutImages(scale_);
     inliers_ = smallErrors();
     outcome = outliers_.setInliers(inliers_);

@@ -30,6 +30,7 @@ private:
     FitOutcome reweightGradually();
     void estimateScale();
     FitOutcome chooseFirstInliers();
+    double spread() const;
     FitOutcome rejectOutliers();
     FitOutcome solveAndScale();
     FitOutcome rejectUntilStable();
