@@ -282,3 +282,29 @@ TEST_CASE("A point that most of its observations contradict is left out: many se
 {
     checkContradicted(trials(30));
 }
+
+TEST_CASE("Pixels that are of other points have no fit, and that is said before it creeps", "[bundle][robust]")
+{
+    for (int cameras : {2, 3})
+        for (double sigma : {0., SIGMA})
+        {
+            Random random(45900 + cameras);
+            CAPTURE(seed(), cameras, sigma);
+            const RigTruth truth = standingRig(cameras);
+            BundleScene scene = makeWandScene(truth, 60, random, sigma);
+            std::reverse(scene.pixels[1][0].begin(), scene.pixels[1][0].end());
+            BundleCall call(truth, scene, random);
+            const cv::Vec3d before = call.cameras[1]->window().normal;
+            try
+            {
+                call.run(GLASS_FREE_EXTRINSICS | GLASS_ROBUST);
+                FAIL("a fit with " << call.rms << " px");
+            }
+            catch (const cv::refract::CalibrationError& e)
+            {
+                CAPTURE(e.err);
+                CHECK(e.cause == cv::refract::CalibrationError::TOO_FEW_INLIERS);
+            }
+            CHECK(call.cameras[1]->window().normal == before);
+        }
+}
