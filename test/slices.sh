@@ -35,6 +35,8 @@ honesty-5         25  test              $source_files
 honesty-6         25  test              $source_files
 honesty-7         25  test              $source_files
 honesty-8         25  test              $source_files
+honesty-9         25  test              $source_files
+honesty-10        25  test              $source_files
 pages             25  test              $source_files doc README.md
 site              10  test,site         doc README.md test/site modules
 opencv-4          25  test,in-tree      modules test/opencv_in_tree.sh test/opencv_source.sh test/opencv_hooks
@@ -159,16 +161,25 @@ slice_fuzz_3() { long_fuzzing 3; }
 slice_fuzz_4() { long_fuzzing 4; }
 
 # ---- Monte Carlo, crude starts, honesty, scaling: what the suites do not run
+# They are ctest's of build/hidden, so that as many run at a time as there are processors.
+begin_hidden() {
+  mkdir -p build/hidden
+  rm -rf build/hidden/*
+}
+add_hidden() {          # add_hidden NAME PROGRAM TEST [VARIABLE=VALUE;...]
+  pattern=$(echo "$3" | sed 's/[],[\\]/\\&/g')      # Catch2 parts names at commas
+  { echo "add_test([==[$1]==] [==[$PWD/build/release/bin/$2]==] [==[$pattern]==] -w NoTests)"
+    echo "set_tests_properties([==[$1]==] PROPERTIES ENVIRONMENT [==[${4:-}]==])"
+  } >>build/hidden/CTestTestfile.cmake
+}
 monte_carlo() {         # monte_carlo FIRST: of the hidden tests every sixth, without those that make the samples' data
   build build/release       # all of it: tests run the tools
+  begin_hidden
   for program in refract_tests refract_program_tests refract_tools_tests; do
     build/release/bin/"$program" "[.]~[wand-data]~[flows]" --list-test-names-only | sed "s/^/$program /"
   done | sed -n "$1~6p" >build/hidden.txt
-  run "there are hidden tests" test -s build/hidden.txt
-  while read -r program name; do
-    pattern=$(echo "$name" | sed 's/[],[\\]/\\&/g')      # Catch2 parts names at commas
-    run "$name" build/release/bin/"$program" "$pattern" -w NoTests </dev/null
-  done <build/hidden.txt
+  while read -r program name; do add_hidden "$name" "$program" "$name"; done <build/hidden.txt
+  suite "hidden tests, $1 of 6" build/hidden
 }
 slice_monte_carlo_1() { monte_carlo 1; }
 slice_monte_carlo_2() { monte_carlo 2; }
@@ -176,26 +187,36 @@ slice_monte_carlo_3() { monte_carlo 3; }
 slice_monte_carlo_4() { monte_carlo 4; }
 slice_monte_carlo_5() { monte_carlo 5; }
 slice_monte_carlo_6() { monte_carlo 6; }
-# The four of [flows], a quarter of their trials: whole, each takes an hour or more.
-honesty() {             # honesty TEST RIGS...
+# The four of [flows], a part of their trials: whole, each takes an hour or more.
+honesty() {             # honesty TEST RIGS...; a quarter of the trials, or $share
   test=$1; shift
   targets=refract_tools_tests
   build build/release
-  for rigs in "$@"; do
-    run "$rigs: $test" env ONLY="$rigs" TRIALS=25% build/release/bin/refract_tools_tests "$(echo "$test" | sed 's/,/\\,/g')" -w NoTests
-  done
+  begin_hidden
+  for rigs in "$@"; do add_hidden "$rigs" refract_tools_tests "$test" "ONLY=$rigs;TRIALS=${share:-25%}"; done
+  suite "$test" build/hidden
+}
+sealed_and_others() {
+  honesty "$1" "sealed, air" "sealed, bare surface, 1" "sealed, bare surface, 2" "sealed, laminate" "shared wall" robust
+}
+sealed_housings() {     # the longest search: half a minute a trial
+  share=10%
+  honesty "$1" "sealed, housing in water, 1" "sealed, housing in water, 2"
 }
 true_flows="Every flow states a true +-: two hundred trials"
 drawn_flows="Every flow, with given values drawn from what is known of them: two hundred trials"
 chosen_lenses="Sealed rigs of which the lens is chosen: points and lengths"
 slice_honesty_1() { honesty "$true_flows" pairs hand-held "known poses"; }
-slice_honesty_2() { honesty "$true_flows" sealed "shared wall" robust; }
+slice_honesty_2() { sealed_and_others "$true_flows"; }
 slice_honesty_3() { honesty "$drawn_flows" pairs hand-held; }
-slice_honesty_4() { honesty "$drawn_flows" sealed "shared wall" robust; }
-slice_honesty_5() { honesty "$chosen_lenses" "sealed, air"; }
-slice_honesty_6() { honesty "$chosen_lenses" "sealed, bare surface"; }
-slice_honesty_7() { honesty "$chosen_lenses" "sealed, housing in water"; }
+slice_honesty_4() { sealed_and_others "$drawn_flows"; }
+lenses_behind() { honesty "$chosen_lenses" "sealed, $1, 2 camera(s), lens chosen of 4" "sealed, $1, 2 camera(s), lens chosen of 5"; }
+slice_honesty_5() { lenses_behind air; }
+slice_honesty_6() { lenses_behind "bare surface"; }
+slice_honesty_7() { lenses_behind "housing in water"; }
 slice_honesty_8() { honesty "Five hundred sealed rigs from afar, few views, wrong corners*" all; }
+slice_honesty_9() { sealed_housings "$true_flows"; }
+slice_honesty_10() { sealed_housings "$drawn_flows"; }
 
 # ---- documentation
 slice_pages() {
