@@ -89,7 +89,7 @@ TEST_CASE("A settings file that does not fit is refused with one sentence, and n
         const ToolResult none = runTool("refract_check --config=" + (folder/name));
         CAPTURE(name, none.err);
         CHECK(none.code == 1);
-        CHECK(mentions(none.err, "--config: there is no such file"));
+        CHECK(mentions(none.err, "--config=" + folder/name + ": there is no such file"));
     }
     writeFile(file, "size = \"6by5\"\n");
     const ToolResult value = runTool("refract_board --square=20 --out=" + (folder / "b.pdf") + " --config=" + file);

@@ -31,7 +31,7 @@ std::string explained(const CalibrationError& e)
         return std::string("the adjustment came to no end: ") + LEAVE_OUT;
     case CalibrationError::NO_SCALE:
         return "nothing tells the scale: no length of --lengths is between two points that two cameras see, by rays that meet beyond the "
-            "windows; are the start and the order of the cameras right?";
+            "windows; are the start, its unit of length and the order of the cameras right?";
     case CalibrationError::TOO_FEW_INLIERS:
         return reason + ": are the points matched, are the cameras in the order of the start, and is the start near enough (a few degrees "
             "and per cent)?";

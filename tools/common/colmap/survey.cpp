@@ -244,6 +244,17 @@ void requireSizes(const ColmapModel& model, const RigModel& rig, const std::vect
     }
 }
 
+//! Empty: none.
+std::string reasonToLeaveOut(const ColmapImage& image, const Taken& taken)
+{
+    if (taken.camera < 0)
+        return "not one of --images";
+    if (!isPose(image.cam_from_world))
+        return "its pose is no rotation and place";
+    const int count = pointCount(image);
+    return count < MIN_POINTS ? format("%d points, %d are needed", count, MIN_POINTS) : "";
+}
+
 } // namespace
 
 std::vector<double> errorsOf(const std::vector<cv::Vec3i>& observations, const std::vector<cv::Point2d>& pixels, const RigModel& rig,
@@ -285,7 +296,7 @@ void Survey::leaveOut(int view)
     for (size_t i = 0; i < viewOf.size(); i++)
         if (viewOf[i] == view)
         {
-            leftOut.push_back(model.images[i].name);
+            leftOut.push_back({model.images[i].name, "no pose fits"});
             viewOf[i] = cameraOf[i] = -1;
         }
 }
@@ -303,12 +314,13 @@ Survey surveyOf(ColmapModel model, const RigModel& rig, const std::vector<std::s
     for (size_t i = 0; i < model.images.size(); i++)
     {
         const ColmapImage& image = model.images[i];
-        const bool isUsed = taken[i].camera >= 0 && isPose(image.cam_from_world) && pointCount(image) >= MIN_POINTS;
+        const std::string reason = reasonToLeaveOut(image, taken[i]);
+        const bool isUsed = reason.empty();
         survey.cameraOf.push_back(isUsed ? taken[i].camera : -1);
         survey.viewOf.push_back(isUsed ? views.insert({taken[i].moment, (int)views.size()}).first->second : -1);
         if (!isUsed)
         {
-            survey.leftOut.push_back(image.name);
+            survey.leftOut.push_back({image.name, reason});
             continue;
         }
         if (survey.viewOf[i] == (int)survey.views.size())

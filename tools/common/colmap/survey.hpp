@@ -13,12 +13,17 @@ namespace tools {
 RigidTransform transformOf(const ColmapPose& pose);
 ColmapPose colmapPoseOf(const RigidTransform& transform);
 
+struct LeftOutImage
+{
+    std::string name, reason;
+};
+
 struct Survey
 {
     ColmapModel model;                          //!< pinholes in water, bent, in any unit
     std::vector<int> cameraOf, viewOf;          //!< of each of its images; -1: left out
     std::vector<std::string> views;             //!< one a moment
-    std::vector<std::string> leftOut;           //!< names of images without a pose, with fewer than MIN_POINTS points, or none that holds
+    std::vector<LeftOutImage> leftOut;
 
     std::vector<cv::Vec3i> observations;        //!< view, camera, index of the point
     std::vector<cv::Point2d> pixels;            //!< raw, of each of them

@@ -239,6 +239,14 @@ ColmapModel refractedModel(SurveyResult& result)
     return model;
 }
 
+static std::vector<std::string> imagesLeftOut(const Survey& survey, bool withReasons)
+{
+    std::vector<std::string> texts;
+    for (const LeftOutImage& image : survey.leftOut)
+        texts.push_back(image.name + (withReasons ? " (" + image.reason + ")" : ""));
+    return texts;
+}
+
 std::string surveyJson(const SurveyResult& result, const std::string& command)
 {
     Json json = adjustmentJson(result.adjustment.bundle, result.findings, command, result.unit);
@@ -246,7 +254,7 @@ std::string surveyJson(const SurveyResult& result, const std::string& command)
     json.set("points_in_known_views", result.adjustment.arePointsAlone);
     json.set("colmap_origin", std::vector<double>(result.start.origin.val, result.start.origin.val + 3));
     json.set("images", result.survey.imageCount());
-    json.set("images_left_out", result.survey.leftOut);
+    json.set("images_left_out", imagesLeftOut(result.survey, false));
     json.set("views", result.survey.views.size());
     json.set("left_out", withoutAnswer(result));
     json.set("points_with_large_std", result.adjustment.largeErrors);
@@ -283,7 +291,7 @@ void printSurvey(std::ostream& out, const SurveyResult& result)
         out << fittedLine(format("pixels left out: %d of %d", adjustment.bundle.seenPixels - adjustment.bundle.usedPixels,
                                  adjustment.bundle.seenPixels) + (lost.empty() ? "" : "; points: "), lost) << "\n";
     if (!result.survey.leftOut.empty())
-        out << fittedLine("images left out: ", result.survey.leftOut) << "\n";
+        out << fittedLine("images left out: ", imagesLeftOut(result.survey, true)) << "\n";
     const auto isBetter = [](const NearestPinhole& a, const NearestPinhole& b) { return a.rms < b.rms; };
     const auto worst = std::max_element(result.pinholes.begin(), result.pinholes.end(), isBetter);
     out << format("a pinhole in place of the window is off by %.2g px RMS, %.2g px at most\n", worst->rms, worst->max);

@@ -345,7 +345,8 @@ void OptionParser::parse(const std::vector<std::string>& arguments)
     }
     catch (const CLI::FileError&)
     {
-        throw Failure("--config: there is no such file, or it cannot be read: check folder and name");
+        throw Failure("--config=" + app_->get_config_ptr()->as<std::string>() + ": there is no such file, or it cannot be read: check "
+                      "folder and name");
     }
     catch (const CLI::Success& asked)
     {
