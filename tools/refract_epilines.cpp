@@ -82,7 +82,7 @@ cv::Vec2d usualDepthRange(const Calibration& rig, const std::vector<Point2d>& po
             }
     if (far > 0)
         return cv::Vec2d(0.92*near, 1.08*far);
-    return cv::Vec2d(cv::norm(rig.extrinsics[1].T), std::numeric_limits<double>::infinity());
+    return cv::Vec2d(cv::norm(rig.extrinsics[1].t), std::numeric_limits<double>::infinity());
 }
 
 cv::Mat readRaw(const std::string& path, const cv::refract::RefractiveCamera& camera)

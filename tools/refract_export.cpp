@@ -207,7 +207,7 @@ void printTable(const CentralRig& rig)
     {
         const CentralError& e = camera.central.error;
         table.add({camera.name, format("%.3g", e.rms), format("%.3g", e.max), format("%.3g", e.lengthRms), format("%.3g", e.lengthMax),
-                   format("%.4g", cv::norm(camera.central.pose.T))});
+                   format("%.4g", cv::norm(camera.central.pose.t))});
     }
     table.print(std::cout);
 }

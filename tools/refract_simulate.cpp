@@ -134,7 +134,7 @@ std::vector<cv::Ptr<cv::refract::RefractiveCamera>> coloursOf(const Scene& scene
 
 Viewpoint viewOf(const Scene& scene, const Job& job)
 {
-    return {cameraOf(scene, job), scene.cameras.extrinsics[job.camera].R, scene.cameras.extrinsics[job.camera].T, coloursOf(scene, job)};
+    return {cameraOf(scene, job), scene.cameras.extrinsics[job.camera].R, scene.cameras.extrinsics[job.camera].t, coloursOf(scene, job)};
 }
 
 cv::Mat imageOf(const Scene& scene, const Target* target, const Job& job, uint64_t seed)

@@ -54,7 +54,7 @@ inline RigPixels pixelsOf(const RigModel& rig, const std::vector<Point3d>& point
     for (size_t c = 0; c < rig.cameras.size(); c++)
     {
         std::vector<Point2d> image;
-        refract::refractiveProjectPoints(points, rotationVector(rig.extrinsics[c].R), rig.extrinsics[c].T, rig.cameras[c], image);
+        refract::refractiveProjectPoints(points, rotationVector(rig.extrinsics[c].R), rig.extrinsics[c].t, rig.cameras[c], image);
         for (Point2d& p : image)
             p += Point2d(random.normal(sigma), random.normal(sigma));
         pixels.push_back(image);

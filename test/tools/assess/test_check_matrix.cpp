@@ -83,7 +83,7 @@ std::vector<MistakeMade> mistakesMade()
                        rig.extrinsics[1] = RigidTransform{R, Vec3d()}*rig.extrinsics[1]; }});
     all.push_back({"base line 0.3 % longer", {"base line (length of T of camera 2", "T of camera 2"},
                    {"square", "R and T", "focal"}, several,
-                   [](RigModel& rig, scenes::Random&) { rig.extrinsics[1].T *= 1.003; }});
+                   [](RigModel& rig, scenes::Random&) { rig.extrinsics[1].t *= 1.003; }});
     all.push_back({"focus of camera 1 by 0.2 %", {"focal length of camera 1", "focal length changed", "focal length and principal"},
                    {"camera 1", "T of camera", "base line", "square", "thickness", "distance"}, always,
                    [](RigModel& rig, scenes::Random&) { lengthen(*rig.cameras[0], 1.002); }});
@@ -110,7 +110,7 @@ std::vector<MistakeMade> mistakesMade()
                            camera->setWindow(window);
                        } }});
     all.push_back({"boards moved by 0.2 mm between direct and glass", {"all boards"}, PANE, withPairs,
-                   [](RigModel& rig, scenes::Random& random) { rig.targetMotion.T = 0.2*direction(random); }});
+                   [](RigModel& rig, scenes::Random& random) { rig.targetMotion.t = 0.2*direction(random); }});
     all.push_back({"square 1 % wrong", {"square"}, {"base line", "T of camera", "thickness", "index of the window", "focal"}, always,
                    [](RigModel& rig, scenes::Random&) { rig.targetScale = 1.01; }});
     all.push_back({"images of cameras 1 and 2 exchanged", {"images of cameras 1 and 2 exchanged"}, {}, several,

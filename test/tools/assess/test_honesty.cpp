@@ -94,7 +94,7 @@ RigModel trueRig(const Setup& setup)
     {
         second = rig.cameras[0]->window();
         second.normal = rig.extrinsics[1].R*second.normal;
-        second.distance += second.normal.dot(rig.extrinsics[1].T);
+        second.distance += second.normal.dot(rig.extrinsics[1].t);
         if (second.distance < 20.)
         {
             GlassWindow first = rig.cameras[0]->window();
@@ -143,7 +143,7 @@ RigModel drawn(const RigModel& nominal, const Setup& setup, scenes::Random& rand
     const double radius = norm(Vec3d(100, 62.5, 0)), turn = setup.std.placement/radius;
     Rodrigues(Vec3d(random.normal(turn), random.normal(turn), random.normal(turn)), rig.targetMotion.R);
     const double shift = setup.std.placement;
-    rig.targetMotion.T = middle - rig.targetMotion.R*middle + Vec3d(random.normal(shift), random.normal(shift), random.normal(shift));
+    rig.targetMotion.t = middle - rig.targetMotion.R*middle + Vec3d(random.normal(shift), random.normal(shift), random.normal(shift));
     return rig;
 }
 
@@ -281,12 +281,16 @@ Fit fitAtKnownPoses(const RigData& data, const std::vector<BoardPose>& poses, co
     for (int c = 0; c < cameras; c++)
     {
         Rs.push_back(Mat(start.extrinsics[c].R, true));
-        Ts.push_back(Mat(start.extrinsics[c].T, true));
+        Ts.push_back(Mat(start.extrinsics[c].t, true));
     }
     GlassRigOptions options(flags | GLASS_USE_POSES | GLASS_FREE_INTRINSICS | GLASS_FREE_EXTRINSICS);
     options.poseCovariances.assign(poses.size(), poseCovariance);
-    setResult(calibrateGlassRig(std::vector<std::vector<Point3d>>(poses.size(), data.views[0].objectPoints), direct, glass,
-                                fit.rig.cameras, std::vector<int>(), Rs, Ts, fit.rvecs, fit.tvecs, options), fit);
+    const std::vector<std::vector<Point3d>> objectPoints(poses.size(), data.views[0].objectPoints);
+    const GlassRigResult result = calibrateGlassRig(objectPoints, direct, glass, fit.rig.cameras, std::vector<int>(), Rs, Ts, fit.rvecs,
+                                                    fit.tvecs, options);
+    setEstimate(result, fit);
+    fit.imageStatus = result.imageStatus;
+    fit.inliers = result.inliers;
     if (cameras == 2)
     {
         fit.rig.extrinsics[1] = {Rs[1], Ts[1]};
@@ -405,7 +409,7 @@ void compare(const Fit& fit, const RigModel& truth, Honesty& honesty)
         Rodrigues(truth.extrinsics[1].R, rt);
         const int at = columnsOf(fit.rig, 1).end;
         addParameters(honesty.ratios["R"], C, at, {r[0] - rt[0], r[1] - rt[1], r[2] - rt[2]});
-        const Vec3d d = fit.rig.extrinsics[1].T - truth.extrinsics[1].T;
+        const Vec3d d = fit.rig.extrinsics[1].t - truth.extrinsics[1].t;
         addParameters(honesty.ratios["T"], C, at + 3, {d[0], d[1], d[2]});
     }
 }
@@ -441,7 +445,7 @@ void comparePoints(const Fit& fit, const RigModel& truth, Honesty& honesty)
     const double none = 1e-9;
     if (truth.cameras.size() == 2)
     {
-        refractiveProjectPoints(points, Mat(truth.extrinsics[1].R), truth.extrinsics[1].T, truth.cameras[1], pixels2);
+        refractiveProjectPoints(points, Mat(truth.extrinsics[1].R), truth.extrinsics[1].t, truth.cameras[1], pixels2);
         const Measurement m = measureRig(calibration, {pixels1, pixels2}, none);
         compareLengths(calibration, points, {pixels1, pixels2}, m, honesty);
         for (size_t i = 0; i < points.size(); i++)
@@ -730,18 +734,18 @@ struct SealedRig
         truth = paperRig(2);
         const double toe = random.uniform(0.05, 0.25);
         Rodrigues(Vec3d(random.normal(0.02), toe, random.normal(0.02)), truth.extrinsics[1].R);
-        truth.extrinsics[1].T = Vec3d(-random.uniform(200, 500), random.normal(10), random.uniform(-100, 100));
+        truth.extrinsics[1].t = Vec3d(-random.uniform(200, 500), random.normal(10), random.uniform(-100, 100));
         GlassWindow window(Vec3d(random.normal(0.1), random.normal(0.1), 1), 12, 1.49, random.uniform(120, 300), 1.333);
         truth.cameras[0]->setWindow(window);
         window.normal = truth.extrinsics[1].R*window.normal;
-        window.distance += window.normal.dot(truth.extrinsics[1].T);
+        window.distance += window.normal.dot(truth.extrinsics[1].t);
         if (!shared)
             window.normal = normalize(Vec3d(random.normal(0.1), random.normal(0.1), 1));
         window.distance = std::max(window.distance, 10.);
         if (shared)
         {
             GlassWindow first = truth.cameras[0]->window();
-            first.distance = window.distance - window.normal.dot(truth.extrinsics[1].T);
+            first.distance = window.distance - window.normal.dot(truth.extrinsics[1].t);
             truth.cameras[0]->setWindow(first);
         }
         truth.cameras[1]->setWindow(window);
@@ -799,9 +803,9 @@ TEST_CASE("Five hundred sealed rigs from afar, few views, wrong corners: no cras
             std::vector<Point2d> pixels1, pixels2;
             std::vector<Point3d> points;
             refractiveProjectPoints(std::vector<Point3d>{a, b}, Vec3d(), Vec3d(), scene.truth.cameras[0], pixels1);
-            refractiveProjectPoints(std::vector<Point3d>{a, b}, Mat(scene.truth.extrinsics[1].R), scene.truth.extrinsics[1].T,
+            refractiveProjectPoints(std::vector<Point3d>{a, b}, Mat(scene.truth.extrinsics[1].R), scene.truth.extrinsics[1].t,
                                     scene.truth.cameras[1], pixels2);
-            triangulateRefractive(fit.rig.cameras[0], fit.rig.cameras[1], fit.rig.extrinsics[1].R, fit.rig.extrinsics[1].T, pixels1,
+            triangulateRefractive(fit.rig.cameras[0], fit.rig.cameras[1], fit.rig.extrinsics[1].R, fit.rig.extrinsics[1].t, pixels1,
                                   pixels2, points);
             answers++;
             lengths.add(norm(points[1] - points[0]) - norm(b - a), std::sqrt(lengthVariance(fit, points[0], points[1])));

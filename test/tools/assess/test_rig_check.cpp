@@ -227,7 +227,7 @@ TEST_CASE("Blurred images are no change, and two changes are not called one", "[
     CHECK(blurred.sigma == Approx(0.2).epsilon(0.2));
 
     RigModel both = tilted(rig, 2., 1.);
-    both.extrinsics[1].T *= 1.01;
+    both.extrinsics[1].t *= 1.01;
     const CheckResult two = checkRig(input, views(both, 0.02), FALSE_ALARM);
     CHECK(two.changed);
     CHECK_FALSE(two.explained);

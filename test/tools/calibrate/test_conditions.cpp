@@ -60,7 +60,7 @@ RigPixels seenBy(const RigModel& rig, const std::vector<Point3d>& points, scenes
     for (size_t c = 0; c < rig.cameras.size(); c++)
     {
         std::vector<Point2d> image;
-        refractiveProjectPoints(points, rotationVector(rig.extrinsics[c].R), rig.extrinsics[c].T, rig.cameras[c], image);
+        refractiveProjectPoints(points, rotationVector(rig.extrinsics[c].R), rig.extrinsics[c].t, rig.cameras[c], image);
         for (Point2d& p : image)
             p += Point2d(random.normal(SIGMA), random.normal(SIGMA));
         pixels.push_back(image);

@@ -145,7 +145,7 @@ TEST_CASE("What markers on a pane tell of it is as good as stated, of normal and
         place.putInto(found);
         // An error of the one against the other that is exact.
         mahalanobis += std::pow(deviationsBetween(found, place.covariance, truth, cv::Matx44d::zeros()), 2)/3;
-        const Vec3d error = truth.normal - found.normal, axis = tangentsOf(found.normal)[0];
+        const Vec3d error = truth.normal - found.normal, axis(tangents(found.normal).col(0).val);
         const cv::Matx33d ofNormal = place.covariance.get_minor<3, 3>(0, 0);
         turns += std::pow(error.dot(axis), 2)/axis.dot(ofNormal*axis);
         distances += std::pow(truth.distance - found.distance, 2)/place.covariance(3, 3);

@@ -3,6 +3,7 @@
 
 // Which column is which parameter, for windows of each shape: against the module's own derivatives.
 #include "calibrate/parameter_columns.hpp"
+#include "window/parameters.hpp"
 #include <catch2/catch.hpp>
 #include <map>
 
@@ -58,20 +59,21 @@ TEST_CASE("A window's numbers are in the columns of its derivatives, for each sh
         }
         CHECK(std::count_if(names.begin(), names.end(), [](const String& name) { return name.find("wedge") == 0; })
               == at.curvature - at.wedge);
-        std::vector<double> numbers(at.end, 0.);
-        putWindow(window, at, numbers.data());
         Mat pixels, jacobian;
         refractiveProjectPoints(points, Vec3d(), Vec3d(), camera, pixels, noArray(), jacobian);
+        const std::vector<double> numbers = windowParameters(window);
+        REQUIRE((int)numbers.size() == at.end - at.window);
         for (int i = at.window; i < at.end; i++)
         {
-            const double step = 1e-6*std::max(1e-3, std::abs(numbers[i]));
+            const int k = i - at.window;
+            const double step = 1e-6*std::max(1e-3, std::abs(numbers[k]));
             std::vector<Point2d> seen[2];
             for (int side : {0, 1})
             {
                 std::vector<double> moved = numbers;
-                moved[i] += side ? step : -step;
-                refractiveProjectPoints(points, Vec3d(), Vec3d(), RefractiveCamera::create(K, Mat(), windowOf(window, at, moved.data())),
-                                        seen[side]);
+                moved[k] += side ? step : -step;
+                const Ptr<RefractiveCamera> other = RefractiveCamera::create(K, Mat(), withParameters(window, moved.data()));
+                refractiveProjectPoints(points, Vec3d(), Vec3d(), other, seen[side]);
             }
             CAPTURE(names[i]);
             for (size_t p = 0; p < points.size(); p++)
@@ -81,7 +83,7 @@ TEST_CASE("A window's numbers are in the columns of its derivatives, for each sh
                 CHECK(norm(slope - stated) < 1e-4*(1. + norm(stated)));
             }
         }
-        const GlassWindow again = windowOf(window, at, numbers.data());
+        const GlassWindow again = withParameters(window, numbers.data());
         CHECK(norm(again.normal - window.normal) + norm(again.center - window.center) + norm(again.axis - window.axis) < 1e-12);
         CHECK(again.radius == window.radius);
         CHECK(again.curvature == window.curvature);

@@ -170,7 +170,7 @@ TEST_CASE("Poses of COLMAP are rotations there and back", "[colmap]")
     {
         const RigidTransform there = tools::transformOf(rvec, cv::Vec3d(4, 5, 6)), back = tools::transformOf(colmapPoseOf(there));
         CHECK(cv::norm(there.R - back.R) < 1e-12);
-        CHECK(back.T == there.T);
+        CHECK(back.t == there.t);
         CHECK(isPose(colmapPoseOf(there)));
     }
 }

@@ -76,7 +76,7 @@ inline RigidTransform motionOfBoards(const Vec3d& rvec, const Vec3d& moved)
 {
     const Vec3d middle(0, 0, 700);
     RigidTransform motion = transformOf(rvec, Vec3d());
-    motion.T = middle - motion.R*middle + moved;
+    motion.t = middle - motion.R*middle + moved;
     return motion;
 }
 
@@ -173,8 +173,8 @@ inline View look(const Scene& scene, const RigidTransform& place, const RigidTra
                  scenes::Random& random)
 {
     const std::vector<Point3d> object = centredBoard(BOARD_SQUARE);
-    View view = observe(scene.truth, object, rotationVector(place.R), place.T, true, NOISE, random);
-    const View through = observe(scene.throughWindow, object, rotationVector(glassPlace.R), glassPlace.T, false, NOISE, random);
+    View view = observe(scene.truth, object, rotationVector(place.R), place.t, true, NOISE, random);
+    const View through = observe(scene.throughWindow, object, rotationVector(glassPlace.R), glassPlace.t, false, NOISE, random);
     view.glass = through.glass;
     view.neighbours = boardTarget().neighbours();
     for (int c = 0; c < scene.cameras(); c++)
@@ -280,7 +280,7 @@ inline Scene mistaken(Mistake mistake, RigKind kind, unsigned salt)
     if (mistake == MOTION)
         scene.throughWindow.targetMotion = motionOfBoards(normalVector(random, 1e-3), 0.6*normalize(normalVector(random, 1.)));
     if (mistake == NUDGE)
-        scene.throughWindow.targetMotion.T = random.uniform(0.1, 0.15)*normalize(normalVector(random, 1.));
+        scene.throughWindow.targetMotion.t = random.uniform(0.1, 0.15)*normalize(normalVector(random, 1.));
     if (mistake == WEDGE)
     {
         VectorXd numbers = toVector(scene.throughWindow);

@@ -314,7 +314,7 @@ TEST_CASE("Where a fit does not converge, one window for cameras that look the s
     CHECK_THAT(explainError(error, rightlyGiven(rig, random)), !Catch::Contains("--window-of-camera"));
     GlassWindow pane = rig.cameras[0]->window();
     pane.normal = rig.extrinsics[1].R*pane.normal;
-    pane.distance += pane.normal.dot(rig.extrinsics[1].T);
+    pane.distance += pane.normal.dot(rig.extrinsics[1].t);
     rig.cameras[1]->setWindow(pane);            // the pane of camera 1, as camera 2 has it
     CalibrationInput input = rightlyGiven(rig, random);
     CHECK_THAT(explainError(error, input), Catch::Contains("With --window-of-camera=1,1 they fit within 0."));

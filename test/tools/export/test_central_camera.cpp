@@ -46,9 +46,9 @@ void checkError(const Ptr<RefractiveCamera>& camera, const Vec2d& range, int coe
     Rodrigues(central.pose.R, rvec);
     std::vector<Point2d> seen;
     if (coefficients == 0)
-        fisheye::projectPoints(points, seen, rvec, central.pose.T, central.camera->cameraMatrix(), central.camera->distCoeffs());
+        fisheye::projectPoints(points, seen, rvec, central.pose.t, central.camera->cameraMatrix(), central.camera->distCoeffs());
     else
-        projectPoints(points, rvec, central.pose.T, central.camera->cameraMatrix(), central.camera->distCoeffs(), seen);
+        projectPoints(points, rvec, central.pose.t, central.camera->cameraMatrix(), central.camera->distCoeffs(), seen);
     double rms = 0, most = 0;
     for (size_t i = 0; i < seen.size(); i++)
     {
@@ -71,7 +71,7 @@ TEST_CASE("Without a window the central camera is the camera itself", "[tools][e
 {
     const CentralCamera central = fitCentralCamera(cameraBehind(GlassWindow()), Vec2d(400, 1200), 5, "camera1");
     CHECK(central.error.max < 1e-6);
-    CHECK(norm(central.pose.T) < 1e-6);
+    CHECK(norm(central.pose.t) < 1e-6);
     CHECK(norm(central.pose.R - Matx33d::eye()) < 1e-9);
     CHECK(norm(central.camera->lensParameters(), cameraBehind(GlassWindow())->lensParameters(), NORM_INF) < 1e-5);
     const CentralCamera wide = fitCentralCamera(cameraBehind(GlassWindow(), true), Vec2d(400, 1200), 0, "camera1");
@@ -95,8 +95,8 @@ TEST_CASE("A pane straight before the camera moves it along the axis, by what Sn
                                                                   GlassWindow(Vec3d(0, 0, 1), 30, 1.5, 60));
     camera->setImageSize(Size(640, 480));
     const CentralCamera central = fitCentralCamera(camera, Vec2d(300, 900), 4, "camera1");
-    CHECK(central.pose.T[2] == Approx(-10).margin(0.02));
-    CHECK(std::hypot(central.pose.T[0], central.pose.T[1]) < 1e-3);
+    CHECK(central.pose.t[2] == Approx(-10).margin(0.02));
+    CHECK(std::hypot(central.pose.t[0], central.pose.t[1]) < 1e-3);
     CHECK(central.error.max < 0.01);
 }
 

@@ -66,7 +66,7 @@ TEST_CASE("What OpenPTV is told is what the cameras see", "[export][foreign]")
         {
             const RigidTransform place = calibration.extrinsics[c];
             Mat ours, theirs;
-            cv::refract::refractiveProjectPoints(points, rotationVector(place.R), place.T, calibration.cameras[c].camera, ours);
+            cv::refract::refractiveProjectPoints(points, rotationVector(place.R), place.t, calibration.cameras[c].camera, ours);
             cv::refract::refractiveProjectPoints(points, rotationVector(Matx33d(read->Rs[c])), read->Ts[c], read->cameras[c], theirs);
             CHECK(cv::checkRange(ours));
             CHECK(cv::norm(ours, theirs, cv::NORM_INF) < SAME);

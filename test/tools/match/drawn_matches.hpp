@@ -71,8 +71,8 @@ inline ScaledMatches drawMatches(const std::string& moment, const TexturedScene&
     }
     std::vector<Point2d> second, along;
     const Vec3d rvec = rotationVector(rig.extrinsics[1].R);
-    refractiveProjectPoints(seen1, rvec, rig.extrinsics[1].T, rig.cameras[1], second);
-    refractiveProjectPoints(nearer, rvec, rig.extrinsics[1].T, rig.cameras[1], along);
+    refractiveProjectPoints(seen1, rvec, rig.extrinsics[1].t, rig.cameras[1], second);
+    refractiveProjectPoints(nearer, rvec, rig.extrinsics[1].t, rig.cameras[1], along);
     const std::vector<SceneRay> rays2 = raysOf(second, viewpointOf(rig, 1));
     ScaledMatches result;
     result.matches.pixels.resize(2);

@@ -164,7 +164,7 @@ inline TexturedScene roomOf(scenes::Random& random, int things = 7)
 
 inline Viewpoint viewpointOf(const RigModel& rig, int c)
 {
-    return { rig.cameras[c], rig.extrinsics[c].R, rig.extrinsics[c].T };
+    return { rig.cameras[c], rig.extrinsics[c].R, rig.extrinsics[c].t };
 }
 
 inline Exposure usualExposure()
@@ -197,7 +197,7 @@ inline std::vector<Point2d> truePartners(const TexturedScene& scene, const RigMo
         points.push_back(hit.surface ? Point3d(ray.at(hit.intersection.s)) : Point3d(NAN, NAN, NAN));
     }
     std::vector<Point2d> partners;
-    refractiveProjectPoints(points, rotationVector(rig.extrinsics[1].R), rig.extrinsics[1].T, rig.cameras[1], partners);
+    refractiveProjectPoints(points, rotationVector(rig.extrinsics[1].R), rig.extrinsics[1].t, rig.cameras[1], partners);
     return partners;
 }
 

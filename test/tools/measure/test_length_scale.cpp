@@ -30,7 +30,7 @@ LengthScale seenBy(const RigModel& truth, const Calibration& calibration, scenes
         const RigidTransform pose = transformOf(Vec3d(0.2, 0.1 - 0.2*k, 0.05), Vec3d(-20, 10, 600 + 30*k));
         std::vector<Point3d> points;
         for (const Point3d& X : view.objectPoints)
-            points.push_back(Point3d(pose*Vec3d(X*(1. + targetError))));
+            points.push_back(Point3d(pose.apply(Vec3d(X*(1. + targetError)))));
         views.push_back(view);
         results.push_back(measureRig(calibration, pixelsOf(truth, points, SIGMA, random), SIGMA));
     }

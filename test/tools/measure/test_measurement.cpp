@@ -126,7 +126,7 @@ Measurement seenByTwo(const Calibration& calibration, double noise, Point2d off,
     Vec3d rig;
     Rodrigues(calibration.extrinsics[1].R, rig);
     refractiveProjectPoints(points, Vec3d(), Vec3d(), calibration.cameras[0].camera, pixels[0]);
-    refractiveProjectPoints(points, rig, calibration.extrinsics[1].T, calibration.cameras[1].camera, pixels[1]);
+    refractiveProjectPoints(points, rig, calibration.extrinsics[1].t, calibration.cameras[1].camera, pixels[1]);
     for (std::vector<Point2d>& image : pixels)
         for (Point2d& p : image)
             p += Point2d(random.normal(noise), random.normal(noise));

@@ -45,7 +45,7 @@ RigModel moved(const RigModel& rig, int column, double step)
             Rodrigues(rvec, result.extrinsics[c].R);
         }
         else if (c > 0 && k >= 3 && k < 6)
-            result.extrinsics[c].T[k - 3] += step;
+            result.extrinsics[c].t[k - 3] += step;
     }
     const int target = column - columnCount(rig);
     if (target == 0)
@@ -58,7 +58,7 @@ RigModel moved(const RigModel& rig, int column, double step)
         Rodrigues(rvec, result.targetMotion.R);
     }
     else if (target >= 4)
-        result.targetMotion.T[target - 4] += step;
+        result.targetMotion.t[target - 4] += step;
     return result;
 }
 
@@ -73,7 +73,7 @@ TEST_CASE("Derivatives of a view of three cameras agree with differences", "[vie
         rig.targetCovariance = Mat::eye(TARGET_ERRORS, TARGET_ERRORS, CV_64F);
         rig.targetScale = 1.01;
         Rodrigues(Vec3d(0.02, -0.01, 0.03), rig.targetMotion.R);
-        rig.targetMotion.T = Vec3d(1, -2, 3);
+        rig.targetMotion.t = Vec3d(1, -2, 3);
     }
     const std::vector<Point3d> object = board(6, 5);
     const Vec3d rvec(0.2, -0.3, 0.1), tvec(-30, 10, 620);

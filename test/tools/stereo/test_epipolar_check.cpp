@@ -27,7 +27,7 @@ TEST_CASE("Points whose raw pixels miss each other's epipolar curve are taken aw
         moved.map[1].at<cv::Vec2f>(y, x - whole)[1] += (float)off;     // the partner's raw pixel, across its row
         const std::vector<cv::Point2f> raw1 = {moved.map[0].at<cv::Point2f>(y, x)}, raw2 = {moved.map[1].at<cv::Point2f>(y, x - whole)};
         std::vector<cv::Point3f> seen;
-        cv::refract::triangulateRefractive(cameras[0].camera, cameras[1].camera, scene.rig.extrinsics[1].R, scene.rig.extrinsics[1].T,
+        cv::refract::triangulateRefractive(cameras[0].camera, cameras[1].camera, scene.rig.extrinsics[1].R, scene.rig.extrinsics[1].t,
                                            raw1, raw2, seen);
         Mat points(rig.size(), CV_32FC3, cv::Scalar::all(NAN));
         points.at<cv::Point3f>(y, x) = seen[0];

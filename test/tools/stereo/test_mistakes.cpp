@@ -102,7 +102,7 @@ std::vector<Mistake> mistakes()
         {"R, T reversed", "from camera 2 to camera 1", [](Pair& p) {
             RigidTransform& T = p.rig.extrinsics[1];
             T.R = T.R.t();
-            T.T = -(T.R*T.T); }},
+            T.t = -(T.R*T.t); }},
         {"normals mirrored in x", "a tilt of both windows", [](Pair& p) { mirrorNormal(p, 0, 0); mirrorNormal(p, 1, 0); }},
         {"normals mirrored in y", "y of both normals", [](Pair& p) { mirrorNormal(p, 0, 1); mirrorNormal(p, 1, 1); }},
         {"normal 1 mirrored in x", "a tilt of the window of camera 1", [](Pair& p) { mirrorNormal(p, 0, 0); }},

@@ -110,7 +110,7 @@ void disturb(Calibration& rig, RandomScene& scene)
     for (int k = 0; k < 3; k++)
     {
         rvec[k] += drawn(place + k, TURN);
-        T.T[k] += drawn(place + 3 + k, SHIFT);
+        T.t[k] += drawn(place + 3 + k, SHIFT);
     }
     Mat R;
     cv::Rodrigues(rvec, R);

@@ -32,7 +32,7 @@ RigPixels predictedPixels(const Calibration& calibration, const std::vector<Poin
     {
         const auto& camera = calibration.cameras[c].camera;
         std::vector<Point2d> pixels;
-        refract::refractiveProjectPoints(points, rotationVector(calibration.extrinsics[c].R), calibration.extrinsics[c].T, camera, pixels);
+        refract::refractiveProjectPoints(points, rotationVector(calibration.extrinsics[c].R), calibration.extrinsics[c].t, camera, pixels);
         const Rect2d image(Point2d(-0.5, -0.5), Size2d(camera->imageSize()));
         for (Point2d& pixel : pixels)
             if (!image.contains(pixel))

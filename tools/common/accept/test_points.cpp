@@ -180,7 +180,7 @@ static RigPixels shownBy(const TestPoints& points, const std::string& image, con
         if (point.image == image)
             there.push_back(point.X);
     for (size_t c = 0; c < pixels.size() && !points.havePixels; c++)
-        cv::refract::refractiveProjectPoints(there, rotationVector(calibration.extrinsics[c].R), calibration.extrinsics[c].T,
+        cv::refract::refractiveProjectPoints(there, rotationVector(calibration.extrinsics[c].R), calibration.extrinsics[c].t,
                                              calibration.cameras[c].camera, pixels[c]);
     return pixels;
 }

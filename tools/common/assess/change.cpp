@@ -77,7 +77,7 @@ void moveCamera(RigModel& rig, int c, const RigidTransform& motion)
         rig.extrinsics[c] = motion*rig.extrinsics[c];
         return;
     }
-    const RigidTransform back{motion.R.t(), -(motion.R.t()*motion.T)};
+    const RigidTransform back = motion.inverse();
     for (size_t k = 1; k < rig.extrinsics.size(); k++)
         rig.extrinsics[k] = rig.extrinsics[k]*back;
 }
@@ -279,10 +279,10 @@ private:
         if (c == 0)
             return;
         addTurnAlone(c);
-        const double baseLine = norm(rig_.extrinsics[c].T);
+        const double baseLine = norm(rig_.extrinsics[c].t);
         if (baseLine > 0.)
             add(format("base line (length of T of camera %d) changed by", c + 1), c, {length(1, WIDE*baseLine)},
-                [c, baseLine](RigModel& rig, const VectorXd& d) { rig.extrinsics[c].T *= 1. + d[0]/baseLine; });
+                [c, baseLine](RigModel& rig, const VectorXd& d) { rig.extrinsics[c].t *= 1. + d[0]/baseLine; });
     }
 
     //! Of two cameras that is a turn of the first, told in its own axes.

@@ -34,7 +34,7 @@ double rangeOf(const RigData& data, const Fit& fit, size_t k)
     Point3d middle;
     for (const Point3d& X : object)
         middle += X*(1./object.size());
-    return norm(transformOf(fit.rvecs[k], fit.tvecs[k])*Vec3d(middle));
+    return norm(transformOf(fit.rvecs[k], fit.tvecs[k]).apply(Vec3d(middle)));
 }
 
 //! Views with a glass image, nearest board first; the others, which are never held out.

@@ -112,7 +112,7 @@ std::optional<CalibratedVolume> calibratedVolume(const RigCalibration& calibrati
             const auto sees = [i](const std::vector<Point2d>& pixels) { return i < pixels.size() && seen(pixels[i]); };
             if (std::none_of(view.glass.begin(), view.glass.end(), sees))
                 continue;
-            const Point3d X = cam1_from_board*Vec3d(object[i]);
+            const Point3d X = cam1_from_board.apply(Vec3d(object[i]));
             if (!volume)
                 volume = CalibratedVolume{X, X};
             volume->least = {std::min(volume->least.x, X.x), std::min(volume->least.y, X.y), std::min(volume->least.z, X.z)};
@@ -135,7 +135,7 @@ Vec3d workingDepth(const RigCalibration& calibration, int camera)
         poseInCamera(fit, k, camera, rvec, tvec);
         const RigidTransform cam_from_board = transformOf(rvec, tvec);
         for (const Point3d& X : view.objectPoints)
-            depths.push_back((cam_from_board*Vec3d(X))[2]);
+            depths.push_back(cam_from_board.apply(Vec3d(X))[2]);
     }
     std::sort(depths.begin(), depths.end());
     return depths.empty() ? Vec3d(NONE, NONE, NONE) : Vec3d(depths.front(), depths[depths.size()/2], depths.back());

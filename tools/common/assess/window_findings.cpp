@@ -179,7 +179,7 @@ std::string scaleInWords(const RigCalibration& c)
     std::string text = format("the target is %.3g %s across, %.3g to %.3g %s from camera 1", width, c.unit.c_str(), depth[0], depth[2],
                               c.unit.c_str());
     if (c.data.cameraCount > 1)
-        text += format(", which is %.3g %s from camera 2", norm(c.fit.rig.extrinsics[1].T), c.unit.c_str());
+        text += format(", which is %.3g %s from camera 2", norm(c.fit.rig.extrinsics[1].t), c.unit.c_str());
     return text;
 }
 

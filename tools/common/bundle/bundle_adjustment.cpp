@@ -123,7 +123,7 @@ std::vector<double> rmsOfCameras(const Matches& matches, const BundleAdjustment&
     {
         std::vector<Point2d> modelled;
         const RigidTransform& place = result.fit.rig.extrinsics[c];
-        refractiveProjectPoints(result.points, rotationVector(place.R), place.T, result.fit.rig.cameras[c], modelled);
+        refractiveProjectPoints(result.points, rotationVector(place.R), place.t, result.fit.rig.cameras[c], modelled);
         double squares = 0.;
         int count = 0;
         for (size_t i = 0; i < modelled.size(); i++)
@@ -175,15 +175,6 @@ void adjustOrExplain(const std::function<void()>& adjust)
     }
 }
 
-void setResult(const BundleAdjustResult& found, Fit& fit)
-{
-    fit.rms = found.rms;
-    fit.sigma = found.pixelStd;
-    fit.dof = found.degreesOfFreedom;
-    fit.stdDeviations = found.stdDeviations;
-    fit.covariance = found.covariance;
-}
-
 double squaredKnown(const BundleStart& start, const GivenLengths& lengths, const BundleAdjustment& result)
 {
     return squaredPrior(start, result.fit.rig) + (lengths.list.empty() ? 0. : squaredLengths(lengths, result.points));
@@ -214,7 +205,7 @@ BundleAdjustment adjustBundle(const BundleStart& start, const Matches& matches, 
     {
         pixels.push_back({Mat(matches.pixels[c], true)});
         Rs.push_back(Mat(fit.rig.extrinsics[c].R, true));
-        Ts.push_back(Mat(fit.rig.extrinsics[c].T, true));
+        Ts.push_back(Mat(fit.rig.extrinsics[c].t, true));
     }
     BundleAdjustOptions options(start.flags | (robust ? GLASS_ROBUST : 0));
     options.criteria.maxCount = iterations;
@@ -227,7 +218,7 @@ BundleAdjustment adjustBundle(const BundleStart& start, const Matches& matches, 
         found = refractiveBundleAdjust(pixels, fit.rig.cameras, fit.rig.windows, Rs, Ts, noArray(), noArray(), points3D, lengths.rows(),
                                        options);
     });
-    setResult(found, fit);
+    setEstimate(found, fit);
     for (int c = 1; c < matches.cameraCount(); c++)
         fit.rig.extrinsics[c] = {Rs[c], Ts[c]};
     setPoints(matches, points3D, found.pointDeviations, found.inliers, result);

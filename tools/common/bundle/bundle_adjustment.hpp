@@ -40,9 +40,6 @@ BundleAdjustment adjustBundle(const BundleStart& start, const Matches& matches, 
 /** Runs what adjusts. Throws Failure that says what was found, then what to do here. */
 void adjustOrExplain(const std::function<void()>& adjust);
 
-//! What the library tells beside the rig, poses and points.
-void setResult(const cv::refract::BundleAdjustResult& found, Fit& fit);
-
 //! BundleAdjustment::squaredKnown, without that of positions.
 double squaredKnown(const BundleStart& start, const GivenLengths& lengths, const BundleAdjustment& result);
 

@@ -51,7 +51,7 @@ CameraCorrection correctionOf(const BundleStart& start, const Fit& fit, int c)
     const int at = extrinsicsColumn(fit.rig, c);
     const double rStd = worstStd(fit.covariance, at), tStd = worstStd(fit.covariance, at + 3);
     correction.R = {rStd > 0., norm(rotationVector(is.R*was.R.t()))*DEGREES, rStd*DEGREES};
-    correction.T = {tStd > 0., norm(is.T - was.T), tStd};
+    correction.T = {tStd > 0., norm(is.t - was.t), tStd};
     return correction;
 }
 
@@ -67,7 +67,7 @@ std::string scaleOf(const BundleStart& start, const GivenLengths& lengths, const
     if (fit.rig.cameras.size() == 1)
         return "";                      // something else tells it
     const int at = extrinsicsColumn(fit.rig, 1) + 3;
-    const Vec3d T = start.rig.extrinsics[1].T;
+    const Vec3d T = start.rig.extrinsics[1].t;
     if (start.covariance.empty() || !(start.covariance.at<double>(at, at) > 0))
         return "T of the start, taken as exact (no --lengths)";
     const Mat direction = Mat(T/norm(T)), C = start.covariance(Rect(at, at, 3, 3));
@@ -115,7 +115,7 @@ void findFarSteps(const BundleStart& start, double many, BundleFindings& finding
     for (size_t c = 1; c < findings.corrections.size() && (start.flags & GLASS_FREE_EXTRINSICS); c++)
     {
         const Correction &R = findings.corrections[c].R, &T = findings.corrections[c].T;
-        const double away = norm(start.rig.extrinsics[c].T);
+        const double away = norm(start.rig.extrinsics[c].t);
         const double far = std::max((R.by - many*R.std)/FAR_DEG, (T.by - many*T.std)/(FAR_SHARE*away));
         if (far <= worst)
             continue;

@@ -359,7 +359,7 @@ void writeCameras(FileStorage& fs, const Calibration& calibration)
         fs << "}";
     }
     for (size_t c = 1; c < calibration.cameras.size(); c++)
-        fs << "R" + placeSuffix(c) << cv::Mat(calibration.extrinsics[c].R) << "T" + placeSuffix(c) << cv::Mat(calibration.extrinsics[c].T);
+        fs << "R" + placeSuffix(c) << cv::Mat(calibration.extrinsics[c].R) << "T" + placeSuffix(c) << cv::Mat(calibration.extrinsics[c].t);
     if (!calibration.windows.empty())
         fs << "window_of_camera" << calibration.windows;
     if (calibration.rms >= 0)

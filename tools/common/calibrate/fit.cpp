@@ -4,6 +4,7 @@
 #include "calibrate/fit.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "calibrate/refit.hpp"
+#include "window/parameters.hpp"
 #include <algorithm>
 #include <cmath>
 
@@ -81,32 +82,13 @@ void startAtKnown(RigModel& rig)
         rig.cameras[c]->setLensParameters(lens);
         if (known.covariance.rows == lens.rows)
             continue;
-        GlassWindow window = rig.cameras[c]->window();
-        const ParameterColumns at = columnsOf(*rig.cameras[c]);
-        const auto isKnown = [&](int column) { return at.has(column) && known.covariance.at<double>(column, column) > 0; };
-        for (int i = 0; i < at.layers; i++)
-        {
-            if (isKnown(at.thickness + i))
-                window.thickness[i] = known.window.thickness[i];
-            if (isKnown(at.index + i))
-                window.index[i] = known.window.index[i];
-            if (at.wedge < at.curvature && isKnown(at.wedge + 2*i))
-                window.wedge[i] = known.window.wedge[i];
-        }
-        if (isKnown(at.outerIndex))
-            window.outerIndex = known.window.outerIndex;
-        if (isKnown(at.normal))
-            window.normal = known.window.normal;
-        if (isKnown(at.distance))
-            window.distance = known.window.distance;
-        if (isKnown(at.radius))
-            window.radius = known.window.radius;
-        for (int i = 0; i < 3; i++)
-            if (isKnown(at.center) && isKnown(at.center + i))
-                window.center[i] = known.window.center[i];
-        if (isKnown(at.curvature))
-            window.curvature = known.window.curvature;
-        rig.cameras[c]->setWindow(window);
+        std::vector<double> window = windowParameters(rig.cameras[c]->window());
+        const std::vector<double> knownWindow = windowParameters(known.window);
+        CV_Assert(knownWindow.size() == window.size());
+        for (int i = 0; i < (int)window.size(); i++)
+            if (known.covariance.at<double>(lens.rows + i, lens.rows + i) > 0)
+                window[i] = knownWindow[i];
+        rig.cameras[c]->setWindow(withParameters(rig.cameras[c]->window(), window.data()));
     }
 }
 
@@ -165,18 +147,6 @@ std::vector<Residual> residualsOf(const RigData& data, const Fit& fit)
     return residuals;
 }
 
-void setResult(const GlassRigResult& result, Fit& fit)
-{
-    fit.stdDeviations = result.stdDeviations;
-    fit.covariance = result.covariance;
-    fit.imageStatus = result.imageStatus;
-    fit.inliers = result.inliers;
-    fit.otherMinima = result.otherMinima;
-    fit.rms = result.rms;
-    fit.sigma = result.pixelStd;
-    fit.dof = result.degreesOfFreedom;
-}
-
 /** The library's error with a text (err) in the tools' words: views by the names of their files, options in place of arguments.
 @param views of the data, which the library was given */
 static CalibrationError inToolsWords(const CalibrationError& error, const RigData& data, const std::vector<int>& views)
@@ -210,7 +180,7 @@ Fit fitImages(const RigData& data, const RigModel& start, const std::vector<int>
     for (int c = 0; c < data.cameraCount; c++)
     {
         Rs.push_back(Mat(fit.rig.extrinsics[c].R, true));
-        Ts.push_back(Mat(fit.rig.extrinsics[c].T, true));
+        Ts.push_back(Mat(fit.rig.extrinsics[c].t, true));
     }
     options.criteria.maxCount = flags & GLASS_ROBUST ? std::min(maxIterations, MAX_ROBUST_ITERATIONS) : maxIterations;
     options.cameraCovariances = covariancesOf(fit.rig, flags);
@@ -219,7 +189,10 @@ Fit fitImages(const RigData& data, const RigModel& start, const std::vector<int>
     {
         const GlassRigResult result = fitGlassRig(objectPoints, imagesOf(data, views, false), imagesOf(data, views, true),
                                                   fit.rig.cameras, fit.rig.windows, Rs, Ts, fit.rvecs, fit.tvecs, options);
-        setResult(result, fit);
+        setEstimate(result, fit);
+        fit.imageStatus = result.imageStatus;
+        fit.inliers = result.inliers;
+        fit.otherMinima = result.otherMinima;
         targetErrors = result.targetErrors;
     }
     catch (const CalibrationError& e)

@@ -45,8 +45,16 @@ void poseInCamera(const Fit& fit, size_t k, int camera, cv::Vec3d& rvec, cv::Vec
 
 const int MAX_ITERATIONS = 1000, MAX_ROBUST_ITERATIONS = 100;     // the latter in each of many rounds
 
-//! What the library tells beside the rig and the poses.
-void setResult(const cv::refract::GlassRigResult& result, Fit& fit);
+//! What a calibration and a bundle adjustment of the library tell alike.
+template<class Result>
+void setEstimate(const Result& result, Fit& fit)
+{
+    fit.rms = result.rms;
+    fit.sigma = result.pixelStd;
+    fit.dof = result.degreesOfFreedom;
+    fit.stdDeviations = result.stdDeviations;
+    fit.covariance = result.covariance;
+}
 
 //! calibrateGlassRig on some of the views.
 Fit fitImages(const RigData& data, const RigModel& start, const std::vector<int>& views, int flags,

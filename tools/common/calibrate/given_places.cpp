@@ -7,6 +7,7 @@ a (t X_i) - e. So the markers tell the normal and the distance together: beside 
 also further away. */
 #include "calibrate/given_places.hpp"
 #include "calibrate/given_window.hpp"
+#include "calibrate/rigid_transform.hpp"
 #include "calibrate/window_face.hpp"
 #include "console/csv.hpp"
 #include "console/failure.hpp"
@@ -27,8 +28,8 @@ const double DEGREES = 180./CV_PI;
 //! Turns about two axes and the distance -> normal and distance.
 Matx43d byTurns(const Vec3d& n)
 {
-    const std::array<Vec3d, 2> t = tangentsOf(n);
-    return Matx43d(t[0][0], t[1][0], 0, t[0][1], t[1][1], 0, t[0][2], t[1][2], 0, 0, 0, 1);
+    const Matx32d t = tangents(n);
+    return Matx43d(t(0, 0), t(0, 1), 0, t(1, 0), t(1, 1), 0, t(2, 0), t(2, 1), 0, 0, 0, 1);
 }
 
 //! Of a marker's distance from a plane.
@@ -129,12 +130,6 @@ int countOf(int cameras, std::vector<int> windows)
 }
 
 } // namespace
-
-std::array<Vec3d, 2> tangentsOf(const Vec3d& n)
-{
-    const Vec3d x = normalize(n.cross(std::abs(n[0]) < 0.9 ? Vec3d(1, 0, 0) : Vec3d(0, 1, 0)));
-    return {x, n.cross(x)};
-}
 
 double GivenPlace::normalStd() const
 {

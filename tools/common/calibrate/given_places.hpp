@@ -6,7 +6,6 @@
 
 #include "calibrate/given_std.hpp"
 #include "calibrate/parameter_columns.hpp"
-#include <array>
 
 /* What is known from outside of where flat windows are: a normal, or markers on the window, which tell its distance, too. */
 namespace tools {
@@ -34,9 +33,6 @@ struct GivenPlace
     //! Beside what is in the covariance of a camera's or a rig's parameters. Where images do not show a distance it is left out.
     void addTo(const cv::refract::GlassWindow& window, const ParameterColumns& at, cv::Mat& covariance) const;
 };
-
-//! Two axes across a normal, and across each other.
-std::array<cv::Vec3d, 2> tangentsOf(const cv::Vec3d& normal);
 
 /** How many standard deviations a window is from where it was given, of the turns about two axes and the distance together.
 @param known, ofFound covariances of normal and distance, of errors that have nothing in common */

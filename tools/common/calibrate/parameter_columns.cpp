@@ -5,6 +5,7 @@
 #include "calibrate/fit.hpp"
 #include "calibrate/window_face.hpp"
 #include "console/table.hpp"
+#include "window/parameters.hpp"
 #include <opencv2/calib3d.hpp>
 #include <algorithm>
 #include <cmath>
@@ -14,34 +15,27 @@ using namespace cv::refract;
 
 namespace tools {
 
-//! In the order of parameterNames(), which are strings: those would take longer than what is done with the columns.
 ParameterColumns columnsOf(const RefractiveCamera& camera, int first)
 {
-    const GlassWindow window = camera.window();
-    const bool round = isRound(window);
-    int next = first;
-    const auto take = [&next](int count) { return (next += count) - count; };
-    const int NONE = -1;
+    const WindowLayout window = windowLayout(camera.window());
+    const bool round = isRound(camera.window());
     ParameterColumns at;
+    at.lens = first;
     at.lensCount = camera.lensParameters().rows;
-    at.layers = (int)window.thickness.size();
-    at.lens = take(at.lensCount);
-    at.window = next;
-    at.normal = round ? NONE : take(3);
-    at.center = round ? take(3) : NONE;
-    at.axis = window.shape == WINDOW_TUBE ? take(3) : NONE;
-    at.distance = round ? NONE : take(1);
-    at.radius = round ? take(1) : NONE;
-    at.thickness = take(at.layers);
-    at.index = take(at.layers);
-    at.innerIndex = take(1);
-    at.outerIndex = take(1);
-    at.wedge = take(window.wedge.empty() ? 0 : 2*at.layers);
-    at.curvature = take(window.shape == WINDOW_BENT);
-    at.end = next;
-    for (int* column : {&at.normal, &at.center, &at.axis, &at.distance, &at.radius})
-        if (*column == NONE)
-            *column = at.end;
+    at.layers = window.layers;
+    at.window = first + at.lensCount;
+    at.end = at.window + window.count;
+    at.normal = round ? at.end : at.window + window.normal;
+    at.center = round ? at.window + window.normal : at.end;
+    at.axis = window.axis < window.media ? at.window + window.axis : at.end;
+    at.distance = round ? at.end : at.window + window.distance;
+    at.radius = round ? at.window + window.distance : at.end;
+    at.thickness = at.window + window.thickness;
+    at.index = at.window + window.index;
+    at.innerIndex = at.window + window.innerIndex;
+    at.outerIndex = at.window + window.outerIndex;
+    at.wedge = at.window + window.wedge;
+    at.curvature = at.window + window.curvature;
     return at;
 }
 
@@ -51,60 +45,6 @@ ParameterColumns columnsOf(const RigModel& rig, int camera)
     for (int c = 0; c < camera; c++)
         first = columnsOf(*rig.cameras[c], first).end;
     return columnsOf(*rig.cameras[camera], first);
-}
-
-void putWindow(const GlassWindow& window, const ParameterColumns& at, double* numbers)
-{
-    const auto put = [&](const Vec3d& vector, int column) {
-        if (at.has(column))
-            std::copy_n(vector.val, 3, numbers + column);
-    };
-    const auto putOne = [&](double number, int column) {
-        if (at.has(column))
-            numbers[column] = number;
-    };
-    put(window.normal, at.normal);
-    putOne(window.distance, at.distance);
-    put(window.center, at.center);
-    put(window.axis, at.axis);
-    putOne(window.radius, at.radius);
-    for (int i = 0; i < at.layers; i++)
-    {
-        numbers[at.thickness + i] = window.thickness[i];
-        numbers[at.index + i] = window.index[i];
-    }
-    numbers[at.innerIndex] = window.innerIndex;
-    numbers[at.outerIndex] = window.outerIndex;
-    for (int i = at.wedge; i < at.curvature; i++)
-        numbers[i] = window.wedge[(i - at.wedge)/2][(i - at.wedge) % 2];
-    putOne(window.curvature, at.curvature);
-}
-
-GlassWindow windowOf(GlassWindow window, const ParameterColumns& at, const double* numbers)
-{
-    const auto takeOne = [&](double& number, int column) {
-        if (at.has(column))
-            number = numbers[column];
-    };
-    if (at.has(at.normal))
-        window.normal = normalize(Vec3d(numbers + at.normal));
-    if (at.has(at.center))
-        window.center = Vec3d(numbers + at.center);
-    if (at.has(at.axis))
-        window.axis = normalize(Vec3d(numbers + at.axis));
-    takeOne(window.distance, at.distance);
-    takeOne(window.radius, at.radius);
-    for (int i = 0; i < at.layers; i++)
-    {
-        window.thickness[i] = numbers[at.thickness + i];
-        window.index[i] = numbers[at.index + i];
-        if (at.wedge < at.curvature)
-            window.wedge[i] = Vec2d(numbers + at.wedge + 2*i);
-    }
-    window.innerIndex = numbers[at.innerIndex];
-    window.outerIndex = numbers[at.outerIndex];
-    takeOne(window.curvature, at.curvature);
-    return window;
 }
 
 int extrinsicsColumn(const RigModel& rig, int camera)
@@ -281,7 +221,7 @@ std::vector<EstimatedParameter> estimatedRigParameters(const Fit& fit)
         for (int i = 0; i < 3; i++)
             append(list, fit, "R" + number + " rotation vector " + "xyz"[i], end + i, rvec[i]);
         for (int i = 0; i < 3; i++)
-            append(list, fit, "T" + number + " " + "xyz"[i], end + 3 + i, fit.rig.extrinsics[c].T[i]);
+            append(list, fit, "T" + number + " " + "xyz"[i], end + 3 + i, fit.rig.extrinsics[c].t[i]);
     }
     return list;
 }

@@ -23,11 +23,6 @@ struct ParameterColumns
 ParameterColumns columnsOf(const cv::refract::RefractiveCamera& camera, int first = 0);
 ParameterColumns columnsOf(const RigModel& rig, int camera);
 
-/** A window's values into the columns that it has in these numbers, and a window with those values. It keeps what it has no columns
-of. */
-void putWindow(const cv::refract::GlassWindow& window, const ParameterColumns& at, double* numbers);
-cv::refract::GlassWindow windowOf(cv::refract::GlassWindow window, const ParameterColumns& at, const double* numbers);
-
 //! Where R (a rotation vector) and T of a camera after the first begin: after the parameters of all cameras.
 int extrinsicsColumn(const RigModel& rig, int camera);
 //! Of all of them.

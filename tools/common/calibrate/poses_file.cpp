@@ -3,6 +3,7 @@
 
 #include "calibrate/poses_file.hpp"
 #include "calibrate/units.hpp"
+#include "calibrate/rigid_transform.hpp"
 #include "console/failure.hpp"
 #include "console/numbers.hpp"
 #include "console/csv.hpp"
@@ -85,8 +86,7 @@ private:
             R.val[i] = table_.number(row, format("r%d%d", i/3 + 1, i % 3 + 1));
         if (!(norm(R*R.t() - Matx33d::eye()) <= ORTHONORMAL && determinant(R) > 0))     // also where that is NaN
             throw Failure(table_.where(row) + ": r11 to r33 are no rotation");
-        Rodrigues(R, rvec);
-        return rvec;
+        return rotationVector(R);
     }
 
     KnownPose poseOf(const CsvTable::Row& row) const

@@ -40,7 +40,7 @@ Vec3d meanPosition(const RigData& data, const RigModel& rig)
         for (const View& view : count ? std::vector<View>() : data.views)
             if (solveView(view, glass ? rig.cameras[0] : bare, (glass ? view.glass : view.direct)[0], pose))
             {
-                sum += pose.T;
+                sum += pose.t;
                 count++;
             }
     return count ? sum*(1./count) : Vec3d();

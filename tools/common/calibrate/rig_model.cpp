@@ -50,7 +50,7 @@ int countWindows(const RigModel& rig)
 
 GlassWindow seenFrom(const GlassWindow& window, const RigidTransform& there)
 {
-    GlassWindow seen = windowInFrame(window, there.R, there.T);
+    GlassWindow seen = windowInFrame(window, there.R, there.t);
     if (!isRound(seen))
         seen.distance = std::max(0., seen.distance);
     return seen;
@@ -111,7 +111,7 @@ void poseInCamera(const RigModel& rig, int camera, Vec3d& rvec, Vec3d& tvec)
         return;
     const RigidTransform& cam_from_cam1 = rig.extrinsics[camera];
     rvec = rotationVector(cam_from_cam1.R*rotationMatrix(rvec));
-    tvec = cam_from_cam1*tvec;
+    tvec = cam_from_cam1.apply(tvec);
 }
 
 std::vector<Point3d> pointsOfTarget(const RigModel& rig, std::vector<Point3d> objectPoints)
@@ -126,7 +126,7 @@ void poseInImage(const RigModel& rig, int camera, bool glass, Vec3d& rvec, Vec3d
     if (glass && !rig.targetCovariance.empty())
     {
         rvec = rotationVector(rig.targetMotion.R*rotationMatrix(rvec));
-        tvec = rig.targetMotion*tvec;
+        tvec = rig.targetMotion.apply(tvec);
     }
     poseInCamera(rig, camera, rvec, tvec);
 }
@@ -181,7 +181,7 @@ std::vector<Point3d> triangulate(const RigModel& rig, const std::vector<std::vec
     for (const RigidTransform& place : rig.extrinsics)
     {
         Rs.push_back(Mat(place.R));
-        Ts.push_back(Mat(place.T));
+        Ts.push_back(Mat(place.t));
     }
     std::vector<Point3d> points;
     triangulateRefractive(rig.cameras, Rs, Ts, pixels, points, noArray(), method, 1., noArray(), noArray(), reprojectionErrors);

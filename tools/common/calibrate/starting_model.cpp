@@ -88,7 +88,7 @@ double relativePoseError(const std::vector<BoardInBoth>& boards, const RigidTran
         double sum = 0.;
         for (const Point3d& X : *b.object)
         {
-            const Vec3d there = cam2_from_cam1*(b.cam1_from_object*Vec3d(X)), here = b.cam2_from_object*Vec3d(X);
+            const Vec3d there = cam2_from_cam1.apply(b.cam1_from_object.apply(Vec3d(X))), here = b.cam2_from_object.apply(Vec3d(X));
             sum += norm(there - here, NORM_L2SQR)/here.dot(here);
         }
         errors.push_back(sum);

@@ -73,7 +73,7 @@ public:
         for (size_t k = 0; k < image.pixels.size(); k++)
         {
             const auto point = points_.find(image.pixels[k].point);
-            const Vec3d X = point == points_.end() ? Vec3d() : pose*point->second;
+            const Vec3d X = point == points_.end() ? Vec3d() : pose.apply(point->second);
             if (!(X[2] > 0))
                 continue;
             seen.pixels.push_back((int)k);

@@ -127,7 +127,7 @@ bool findPoses(double factor, const Survey& survey, const RigModel& rig, const T
         const ColmapImage& image = survey.model.images[trials.images[view]];
         const int camera = survey.cameraOf[trials.images[view]];
         const RigidTransform pose = transformOf(image.cam_from_world);
-        Vec3d rvec = rotationVector(pose.R), tvec = factor*pose.T;
+        Vec3d rvec = rotationVector(pose.R), tvec = factor*pose.t;
         if (objects[view].size() < 4 || !refractiveSolvePnP(objects[view], pixels[view], rig.cameras[camera], rvec, tvec, true))
             return false;
         poseInCamera1(rig, camera, rvec, tvec);
@@ -151,7 +151,7 @@ double errorAt(double factor, const Survey& survey, const RigModel& rig, const T
     for (const RigidTransform& place : rig.extrinsics)
     {
         Rs.push_back(Mat(place.R, true));
-        Ts.push_back(Mat(place.T, true));
+        Ts.push_back(Mat(place.t, true));
     }
     std::vector<Vec4d> lengths;
     for (const auto& pair : trials.pairs)
@@ -178,7 +178,7 @@ double medianDepth(const Survey& survey)
 {
     std::vector<double> depths;
     for (size_t i = 0; i < survey.sources.size(); i += 1 + survey.sources.size()/10000)
-        depths.push_back((transformOf(survey.imageOf((int)i).cam_from_world)*survey.model.points[survey.observations[i][2]].X)[2]);
+        depths.push_back(transformOf(survey.imageOf((int)i).cam_from_world).apply(survey.model.points[survey.observations[i][2]].X)[2]);
     return median(depths);
 }
 

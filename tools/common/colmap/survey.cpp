@@ -24,21 +24,7 @@ RigidTransform transformOf(const ColmapPose& pose)
                         2*(y*z + x*w), 1 - 2*(x*x + y*y)), pose.t};
 }
 
-ColmapPose colmapPoseOf(const RigidTransform& transform)
-{
-    // By the largest of the four, of which none is lost then.
-    const cv::Matx33d& R = transform.R;
-    const double squares[] = {1 + R(0, 0) + R(1, 1) + R(2, 2), 1 + R(0, 0) - R(1, 1) - R(2, 2), 1 - R(0, 0) + R(1, 1) - R(2, 2),
-                              1 - R(0, 0) - R(1, 1) + R(2, 2)};
-    const cv::Matx44d products(squares[0], R(2, 1) - R(1, 2), R(0, 2) - R(2, 0), R(1, 0) - R(0, 1),
-                               R(2, 1) - R(1, 2), squares[1], R(0, 1) + R(1, 0), R(0, 2) + R(2, 0),
-                               R(0, 2) - R(2, 0), R(0, 1) + R(1, 0), squares[2], R(1, 2) + R(2, 1),
-                               R(1, 0) - R(0, 1), R(0, 2) + R(2, 0), R(1, 2) + R(2, 1), squares[3]);
-    const int largest = (int)(std::max_element(squares, squares + 4) - squares);
-    const cv::Matx14d row = products.row(largest);
-    const cv::Vec4d q(row(0), row(1), row(2), row(3));
-    return {q*((q[0] < 0 ? -1. : 1.)/cv::norm(q)), transform.T};
-}
+ColmapPose colmapPoseOf(const RigidTransform& transform) { return {cv::refract::quaternionOf(transform.R), transform.t}; }
 
 bool matchesPattern(const std::string& name, const std::string& pattern)
 {
@@ -106,13 +92,13 @@ void requireSameOrder(const ColmapRig& own, const RigModel& rig)
     {
         const RigidTransform place = fromTo(places[0], places[c]);
         turn = std::max(turn, cv::norm(rotationVector(place.R*rig.extrinsics[c].R.t())));
-        bases.push_back(place.T);
-        longest = std::max(longest, cv::norm(place.T));
-        calibrated = std::max(calibrated, cv::norm(rig.extrinsics[c].T));
+        bases.push_back(place.t);
+        longest = std::max(longest, cv::norm(place.t));
+        calibrated = std::max(calibrated, cv::norm(rig.extrinsics[c].t));
     }
     bool isSame = turn < TURN;
     for (size_t c = 1; c < places.size() && longest > 0. && calibrated > 0.; c++)
-        isSame = isSame && cv::norm(bases[c - 1]/longest - rig.extrinsics[c].T/calibrated) < BASE;
+        isSame = isSame && cv::norm(bases[c - 1]/longest - rig.extrinsics[c].t/calibrated) < BASE;
     if (!isSame)
         throw Failure("the cameras of the model's rig are not beside each other as those of the calibration: in another order? Say with "
                       "--images='GLOB' for each camera which images are its own");
@@ -276,7 +262,7 @@ std::vector<double> errorsOf(const std::vector<cv::Vec3i>& observations, const s
         std::vector<cv::Point2d> projected;
         for (int row : rows[image])
             shown.push_back(points[observations[row][2]]);
-        cv::refract::refractiveProjectPoints(shown, rotationVector(pose.R), pose.T, rig.cameras[camera], projected);
+        cv::refract::refractiveProjectPoints(shown, rotationVector(pose.R), pose.t, rig.cameras[camera], projected);
         for (size_t k = 0; k < projected.size(); k++)
             errors[rows[image][k]] = cv::norm(projected[k] - pixels[rows[image][k]]);
     }

@@ -37,7 +37,7 @@ void adjust(const Survey& survey, const BundleStart& bundle, const SurveyStart& 
     for (const RigidTransform& place : fit.rig.extrinsics)
     {
         Rs.push_back(Mat(place.R, true));
-        Ts.push_back(Mat(place.T, true));
+        Ts.push_back(Mat(place.t, true));
     }
     BundleAdjustOptions options(bundle.flags | (robust ? GLASS_ROBUST : 0));
     options.poseCovariances = covariancesOfPoses(start, result.rvecs, result.tvecs);
@@ -68,7 +68,7 @@ void adjust(const Survey& survey, const BundleStart& bundle, const SurveyStart& 
                           + "; leave it out of the model, or its wrong points");
         }
     });
-    setResult(found, fit);
+    setEstimate(found, fit);
     result.viewCovariances = found.viewCovariances;
     result.used = found.inliers[0];
     deviations = found.pointDeviations;

@@ -46,7 +46,7 @@ Vec3d stdsOf(const Matx33d& covariance)
 RigidTransform placed(const SurveyResult& result, int view)
 {
     const RigidTransform pose = result.adjustment.poseOf(view);
-    return {pose.R, pose.T - pose.R*result.start.origin};
+    return {pose.R, pose.t - pose.R*result.start.origin};
 }
 
 //! Of its translation: T of the fit less R of the origin, which turns with the pose.
@@ -152,7 +152,7 @@ static std::vector<NearestPinhole> pinholesOf(const Survey& survey, const Survey
     {
         const Vec3i& o = survey.observations[i];
         if (adjustment.used[i])
-            seen[o[1]].push_back(Point3d((rig.extrinsics[o[1]]*adjustment.poseOf(o[0]))*Vec3d(adjustment.bundle.points[o[2]])));
+            seen[o[1]].push_back(Point3d((rig.extrinsics[o[1]]*adjustment.poseOf(o[0])).apply(Vec3d(adjustment.bundle.points[o[2]]))));
     }
     std::vector<NearestPinhole> pinholes;
     for (size_t c = 0; c < seen.size(); c++)
@@ -199,7 +199,7 @@ std::string surveyPosesCsv(const SurveyResult& result)
         const Matx66d covariance(result.adjustment.viewCovariances[view].ptr<double>());
         csv << cellOf(result.survey.views[view]);
         putVector(csv, result.adjustment.rvecs[view]*DEGREES);
-        putVector(csv, pose.T);
+        putVector(csv, pose.t);
         putVector(csv, stdsOf(covariance.get_minor<3, 3>(0, 0))*DEGREES);
         putVector(csv, stdsOf(placedCovariance(result, (int)view)));
         putVector(csv, pose.inverse(Vec3d()));

@@ -26,11 +26,11 @@ struct Similarity
     double s = 1.;
     RigidTransform rigid;
 
-    Vec3d operator*(const Vec3d& X) const { return rigid*(s*X); }
+    Vec3d operator*(const Vec3d& X) const { return rigid.apply(s*X); }
     RigidTransform ofPose(const RigidTransform& cam_from_world) const
     {
         const Matx33d R = cam_from_world.R*rigid.R.t();
-        return {R, s*cam_from_world.T - R*rigid.T};
+        return {R, s*cam_from_world.t - R*rigid.t};
     }
 };
 
@@ -61,7 +61,7 @@ double scaleOfRig(const Survey& survey, const RigModel& rig)
     for (const std::vector<int>& images : imagesOfViews(survey, (int)rig.cameras.size()))
         for (size_t c = 1; c < images.size(); c++)
             if (images[0] >= 0 && images[c] >= 0)
-                ratios.push_back(norm(rig.extrinsics[c].T)/norm(centreOf(survey.model.images[images[0]].cam_from_world)
+                ratios.push_back(norm(rig.extrinsics[c].t)/norm(centreOf(survey.model.images[images[0]].cam_from_world)
                                                                 - centreOf(survey.model.images[images[c]].cam_from_world)));
     return ratios.empty() ? 0. : median(ratios);
 }
@@ -99,7 +99,7 @@ Similarity ontoPositions(const Survey& survey, const std::map<int, KnownPosition
     Similarity onto;
     onto.rigid.R = Matx33d(svd.u.ptr<double>())*signs*Matx33d(svd.vt.ptr<double>());
     onto.s = (w[0] + w[1] + signs(2, 2)*w[2])/squares;
-    onto.rigid.T = meanTo - onto.s*(onto.rigid.R*meanFrom);
+    onto.rigid.t = meanTo - onto.s*(onto.rigid.R*meanFrom);
     return onto;
 }
 
@@ -186,7 +186,7 @@ void startPose(const Survey& survey, const RigModel& rig, const Similarity& metr
             pose = metric.ofPose(transformOf(survey.imageOf(row).cam_from_world));
         }
     rvec = rotationVector(pose.R);
-    tvec = pose.T;
+    tvec = pose.t;
     refractiveSolvePnP(objects, pixels, rig.cameras[camera], rvec, tvec, true);     // else it stays where it is
     poseInCamera1(rig, camera, rvec, tvec);
 }

@@ -52,7 +52,7 @@ void addMotion(const FittedRig& rig, std::vector<Cause>& causes)
     for (bool turns : {false, true})
         causes.push_back({"motion", motionAbout(middle, first, turns), [=](const Relaxed& found, double deviations) {
             const RigidTransform& motion = found.glass.targetMotion;
-            const Vec3d moved = motion*middle - middle, turned = DEGREES*rotationVector(motion.R);
+            const Vec3d moved = motion.apply(middle) - middle, turned = DEGREES*rotationVector(motion.R);
             // Where it turns, its columns are those of the camera's centre: the +- about the middle is that of the shifts.
             const int of = turns ? (int)found.covariance.rows() - 6 : first + 3;
             std::string text;
@@ -136,7 +136,7 @@ std::vector<Shift> placeOfCamera(const RigModel& rig, int camera)
         {
             const RigidTransform moved = rig.extrinsics[c]*inverse;
             const Vec3d turned = (rotationVector(moved.R) - rotationVector(rig.extrinsics[c].R))*(1./STEP);
-            const Vec3d shifted = (moved.T - rig.extrinsics[c].T)*(1./STEP);
+            const Vec3d shifted = (moved.t - rig.extrinsics[c].t)*(1./STEP);
             for (int i = 0; i < 3; i++)
             {
                 shift.numbers.push_back({extrinsicsColumn(rig, c) + i, turned[i]});
@@ -156,7 +156,7 @@ void addPlaces(const FittedRig& rig, std::vector<Cause>& causes)
                 const int other = c > 0 ? c : 1;
                 const RigidTransform &before = found.direct.extrinsics[other], &after = found.glass.extrinsics[other];
                 const double turned = DEGREES*norm(rotationVector(after.R*before.R.t()));
-                const double moved = norm(after.R.t()*after.T - before.R.t()*before.T);
+                const double moved = norm(after.R.t()*after.t - before.R.t()*before.t);
                 return format("camera %d moved in the rig between direct and glass images: it turned by %.3g degrees and moved by %.2g",
                               c + 1, turned, moved) + howSure(deviations); }});
 }

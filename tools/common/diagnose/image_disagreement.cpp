@@ -150,7 +150,7 @@ std::vector<std::vector<PointInBoth>> pointsOf(const std::vector<Both>& boards)
     std::vector<std::vector<PointInBoth>> points(boards.size());
     for (size_t i = 0; i < boards.size(); i++)
         for (const Point3d& X : boards[i].view->objectPoints)
-            points[i].push_back({boards[i].one*Vec3d(X), boards[i].other*Vec3d(X)});
+            points[i].push_back({boards[i].one.apply(Vec3d(X)), boards[i].other.apply(Vec3d(X))});
     return points;
 }
 
@@ -162,7 +162,7 @@ std::vector<double> distancesFrom(const RigidTransform& place, const std::vector
     {
         double sum = 0.;
         for (const PointInBoth& X : board)
-            sum += norm(place*X.one - X.other)/std::abs(X.other[2]);
+            sum += norm(place.apply(X.one) - X.other)/std::abs(X.other[2]);
         errors.push_back(focal*sum/board.size());
     }
     return errors;

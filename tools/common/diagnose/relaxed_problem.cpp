@@ -33,15 +33,6 @@ MatrixXd informationOf(MatrixXd covariance)
     return timesTranspose(root, root);
 }
 
-//! Two directions across a normal.
-Eigen::Matrix<double, 3, 2> across(const Vec3d& normal)
-{
-    const Vec3d a = normalize(normal.cross(std::abs(normal[1]) < 0.9 ? Vec3d(0, 1, 0) : Vec3d(1, 0, 0))), b = normal.cross(a);
-    Eigen::Matrix<double, 3, 2> basis;
-    basis << a[0], b[0], a[1], b[1], a[2], b[2];
-    return basis;
-}
-
 const double BEFORE_BOARDS = 0.2;       // of the range of the nearest board: where a window is, and how well that is known;
 const double AT_MOST = 0.6;             // beyond this part boards reach into it
 
@@ -79,11 +70,12 @@ MatrixXd freeOf(const Fit& fit)
                 add(i);
     };
     const auto addAcross = [&](const Vec3d& axis, int first) {
-        const Eigen::Matrix<double, 3, 2> basis = across(axis);
+        const Matx32d basis = tangents(axis);
         for (int k = 0; k < 2; k++)
         {
             columns.push_back(VectorXd::Zero(size));
-            columns.back().segment<3>(first) = basis.col(k);
+            for (int i = 0; i < 3; i++)
+                columns.back()[first + i] = basis(i, k);
         }
     };
     for (int c = 0; c < (int)rig.cameras.size(); c++)

@@ -174,8 +174,9 @@ void addKnownPlaces(const FittedRig& rig, std::vector<Cause>& causes)
         const GivenPlace given = rig.options.placeOf(c);
         const ParameterColumns at = columnsOf(rig.fit.rig, c);
         std::vector<Shift> freed;
-        for (const Vec3d& axis : tangentsOf(given.normal))
-            freed.push_back({{{at.normal, axis[0]}, {at.normal + 1, axis[1]}, {at.normal + 2, axis[2]}}});
+        const Matx32d turns = tangents(given.normal);
+        for (int k = 0; k < 2; k++)
+            freed.push_back({{{at.normal, turns(0, k)}, {at.normal + 1, turns(1, k)}, {at.normal + 2, turns(2, k)}}});
         const bool freesDistance = given.tellsDistance() && hasDifferentMedia(rig.options.window);
         if (freesDistance)
             freed.push_back({{{at.distance, 1.}}});

@@ -159,7 +159,7 @@ CentralError errorOf(const SeenPoints& sample, const cv::Vec2d& range, const Cen
     const double WITHIN = 2;        // times the far end: all that a lens of 120 degrees sees there
     std::vector<Point2d> seen;
     std::vector<Vec3d> origins, directions;
-    cv::refract::refractiveProjectPoints(sample.points, central.pose.R, central.pose.T, central.camera, seen);
+    cv::refract::refractiveProjectPoints(sample.points, central.pose.R, central.pose.t, central.camera, seen);
     cv::refract::refractiveUnprojectPoints(sample.pixels, origins, directions, central.camera);
     CentralError e;
     const auto n = (double)sample.points.size();

@@ -78,14 +78,6 @@ std::string cameraLine(const ColmapCamera& own, const ColmapPort& port)
     return line + "\n";
 }
 
-//! qw qx qy qz
-cv::Vec4d quaternionOf(const cv::Matx33d& R)
-{
-    const cv::Vec3d rvec = rotationVector(R);
-    const double angle = cv::norm(rvec), scale = angle > 0 ? std::sin(angle/2)/angle : 0.5;
-    return {std::cos(angle/2), scale*rvec[0], scale*rvec[1], scale*rvec[2]};
-}
-
 //! A camera at a view.
 struct Image
 {
@@ -102,8 +94,8 @@ struct CorrectedPixel
     {
         std::vector<Point2d> central, refracted;
         const std::vector<cv::Point3d> point{X};
-        cv::refract::refractiveProjectPoints(point, camera.pose.R, camera.pose.T, camera.central.camera, central);
-        cv::refract::refractiveProjectPoints(point, camera.truePose.R, camera.truePose.T, camera.trueCamera, refracted);
+        cv::refract::refractiveProjectPoints(point, camera.pose.R, camera.pose.t, camera.central.camera, central);
+        cv::refract::refractiveProjectPoints(point, camera.truePose.R, camera.truePose.t, camera.trueCamera, refracted);
         residual = raw - refracted[0];
         pixel = central[0] + residual;
     }
@@ -153,9 +145,9 @@ public:
         for (size_t i = 0; i < images_.size(); i++)
         {
             const ExportedCamera& camera = rig_.cameras[images_[i].camera];
-            const cv::Vec4d q = quaternionOf(camera.pose.R);
-            text += cv::format("%d %.17g %.17g %.17g %.17g %.17g %.17g %.17g %d ", (int)i + 1, q[0], q[1], q[2], q[3], camera.pose.T[0],
-                               camera.pose.T[1], camera.pose.T[2], images_[i].camera + 1) + images_[i].name + "\n";
+            const cv::Vec4d q = cv::refract::quaternionOf(camera.pose.R);
+            text += cv::format("%d %.17g %.17g %.17g %.17g %.17g %.17g %.17g %d ", (int)i + 1, q[0], q[1], q[2], q[3], camera.pose.t[0],
+                               camera.pose.t[1], camera.pose.t[2], images_[i].camera + 1) + images_[i].name + "\n";
             for (const auto& point : images_[i].points)
                 text += cv::format("%.10g %.10g %d ", point.first.x + COLMAP_CORNER, point.first.y + COLMAP_CORNER, point.second);
             text += "\n";

@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "export/export_files.hpp"
-
-#include <opencv2/calib3d.hpp>
+#include "calibrate/rigid_transform.hpp"
 
 namespace tools {
 
@@ -29,8 +28,8 @@ std::vector<ExportFile> mrcalFiles(const CentralRig& rig)
         const cv::Mat K = camera.central.camera->cameraMatrix();
         cv::Mat lens = (cv::Mat_<double>(4, 1) << K.at<double>(0, 0), K.at<double>(1, 1), K.at<double>(0, 2), K.at<double>(1, 2)), rt;
         lens.push_back(camera.central.camera->distCoeffs());
-        cv::Rodrigues(camera.pose.R, rt);
-        rt.push_back(cv::Mat(camera.pose.T));
+        rt.push_back(cv::Mat(rotationVector(camera.pose.R)));
+        rt.push_back(cv::Mat(camera.pose.t));
         const cv::Size size = camera.central.camera->imageSize();
         files.push_back({camera.name + ".cameramodel",
             "# " + headText(rig) + "\n# " + errorText(rig, camera) + "\n{\n"

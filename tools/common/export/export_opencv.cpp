@@ -11,7 +11,7 @@ static void writeCamera(cv::FileStorage& fs, const CentralRig& rig, const Export
 {
     const CentralError& e = camera.central.error;
     camera.central.camera->write(fs);
-    fs << "central_R" << cv::Mat(camera.pose.R) << "central_T" << cv::Mat(camera.pose.T);
+    fs << "central_R" << cv::Mat(camera.pose.R) << "central_T" << cv::Mat(camera.pose.t);
     fs << "central_error" << "{" << "z_near" << rig.range[0] << "z_far" << rig.range[1] << "rms_px" << e.rms << "max_px" << e.max
        << "rms_length" << e.lengthRms << "max_length" << e.lengthMax << "}";
 }
@@ -37,7 +37,7 @@ void writeOpenCV(const std::string& path, const CentralRig& rig)
         {
             const std::string number = c == 1 ? "" : std::to_string(c + 1);
             const RigidTransform place = fromTo(cameras[0].pose, cameras[c].pose);
-            fs << "R" + number << cv::Mat(place.R) << "T" + number << cv::Mat(place.T);
+            fs << "R" + number << cv::Mat(place.R) << "T" + number << cv::Mat(place.t);
         }
     });
 }

@@ -124,7 +124,7 @@ std::vector<ExportFile> openPtvFiles(const Calibration& calibration)
             throw Failure(cv::format("camera%zu has another fx/fy than camera1, and OpenPTV has one shape of pixels for all cameras",
                                      c + 1));
         const std::string name = cv::format("camera%zu", c + 1), image = cv::format("cam%zu.tif", c + 1);
-        files.push_back({image + ".ori", orientationOf(camera, place.R*FLIP, place*origin, name)});
+        files.push_back({image + ".ori", orientationOf(camera, place.R*FLIP, place.apply(origin), name)});
         files.push_back({image + ".addpar", lensOf(camera, name)});
         names += image + "\n" + image + "\n";
     }

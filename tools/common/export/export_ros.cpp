@@ -39,10 +39,10 @@ void findRectification(const CentralRig& rig, std::vector<Mat>& R, std::vector<M
     Mat Q;
     if (isFisheye(a))
         cv::fisheye::stereoRectify(first->cameraMatrix(), first->distCoeffs(), second->cameraMatrix(), second->distCoeffs(),
-                                   first->imageSize(), place.R, place.T, R[0], R[1], P[0], P[1], Q, cv::CALIB_ZERO_DISPARITY);
+                                   first->imageSize(), place.R, place.t, R[0], R[1], P[0], P[1], Q, cv::CALIB_ZERO_DISPARITY);
     else
         cv::stereoRectify(first->cameraMatrix(), first->distCoeffs(), second->cameraMatrix(), second->distCoeffs(),
-                          first->imageSize(), place.R, place.T, R[0], R[1], P[0], P[1], Q);
+                          first->imageSize(), place.R, place.t, R[0], R[1], P[0], P[1], Q);
 }
 
 } // namespace

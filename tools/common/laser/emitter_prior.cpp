@@ -7,6 +7,7 @@
 #include "calibrate/window_face.hpp"
 #include "console/failure.hpp"
 #include "math/dense.hpp"
+#include "window/parameters.hpp"
 #include <opencv2/core/persistence.hpp>
 #include <cmath>
 
@@ -23,19 +24,15 @@ const double LEAST = 1e-12, MOST_DEGREES = 45., MOST = 1e9;
 //! Lens and window in the order of the camera's parameters.
 VectorXd parametersOf(const RefractiveCamera& camera)
 {
-    const ParameterColumns at = columnsOf(camera);
-    const std::vector<double> lens = camera.lensParameters();
-    VectorXd q = VectorXd::Zero(at.end);
-    for (int i = 0; i < at.lensCount; i++)
-        q[at.lens + i] = lens[i];
-    putWindow(camera.window(), at, q.data());
-    return q;
+    std::vector<double> q = camera.lensParameters();
+    const std::vector<double> window = windowParameters(camera.window());
+    q.insert(q.end(), window.begin(), window.end());
+    return VectorXd::Map(q.data(), q.size());
 }
 
 Ptr<RefractiveCamera> withWindow(const RefractiveCamera& camera, const VectorXd& q)
 {
-    const ParameterColumns at = columnsOf(camera);
-    GlassWindow w = windowOf(camera.window(), at, q.data());
+    GlassWindow w = withParameters(camera.window(), q.data() + columnsOf(camera).window);
     w.distance = std::max(w.distance, 0.);
     const Ptr<RefractiveCamera> moved = copyWithWindow(camera.clone(), w);
     moved->setImageSize(camera.imageSize());
@@ -79,14 +76,13 @@ void EmitterPrior::addWindow(const Keys& keys)
     if (!at.has(at.normal))
         throw Failure(keys.name() + ": the emitter is in a " + nameOfShape(emitter_.camera->window()) + ", and only what is known of flat "
                       "windows can be told here. Leave glass_window_std out: the window is then exact");
-    const Vec3d n = emitter_.camera->window().normal, other = std::abs(n[0]) < 0.7 ? Vec3d(1, 0, 0) : Vec3d(0, 1, 0);
-    const Vec3d b1 = normalize(n.cross(other)), b2 = n.cross(b1);
+    const Matx32d across = tangents(emitter_.camera->window().normal);
     const auto one = [&](const char* key) { return keys.number(key, 0., MOST, 0.); };
     if (keys.has("normal_deg"))
     {
         const std::vector<double> degrees = keys.numbers("normal_deg", 2);
-        free({b1[0], b1[1], b1[2]}, POSE + at.normal, degrees[0]*CV_PI/180);
-        free({b2[0], b2[1], b2[2]}, POSE + at.normal, degrees[1]*CV_PI/180);
+        for (int k = 0; k < 2; k++)
+            free({across(0, k), across(1, k), across(2, k)}, POSE + at.normal, degrees[k]*CV_PI/180);
     }
     free({1.}, POSE + at.distance, one("distance"));
     for (const char* key : {"thickness", "index"})

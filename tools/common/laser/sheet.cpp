@@ -111,11 +111,10 @@ SheetDistances distancesFromEmitter(const Emitter& emitter, const std::vector<Po
 //! Two tangents of the normal, and d.
 MatrixXd PlaneSurface::basis() const
 {
-    const Vec3d n(plane_.val), other = std::abs(n[0]) < 0.7 ? Vec3d(1, 0, 0) : Vec3d(0, 1, 0);
-    const Vec3d b1 = normalize(n.cross(other)), b2 = n.cross(b1);
+    const Matx32d across = tangents(Vec3d(plane_.val));
     MatrixXd basis = MatrixXd::Zero(4, 3);
     for (int i = 0; i < 3; i++)
-        basis.row(i) << b1[i], b2[i], 0.;
+        basis.row(i) << across(i, 0), across(i, 1), 0.;
     basis(3, 2) = 1.;
     return basis;
 }

@@ -105,7 +105,7 @@ MatrixXd missesOf(const ScaledMatches& scaled, const RigModel& rig, const std::v
     for (int c = 0; c < matches.cameraCount(); c++)
     {
         std::vector<Point2d> predicted;
-        refractiveProjectPoints(points, rotationVector(rig.extrinsics[c].R), rig.extrinsics[c].T, rig.cameras[c], predicted);
+        refractiveProjectPoints(points, rotationVector(rig.extrinsics[c].R), rig.extrinsics[c].t, rig.cameras[c], predicted);
         for (int i = 0; i < scaled.size(); i++)
         {
             const Point2d miss = (matches.pixels[c][i] - predicted[i])*(1./std::sqrt(noise.varianceOf(residuals[i])));

@@ -72,9 +72,7 @@ void mirrorNormal(Undone& pair, int camera, int axis)
 
 void reverseTransform(Undone& pair)
 {
-    RigidTransform& T = pair.calibration.extrinsics[1];
-    T.R = T.R.t();
-    T.T = -(T.R*T.T);
+    pair.calibration.extrinsics[1] = pair.calibration.extrinsics[1].inverse();
 }
 
 //! Of pairs whose features have partners only if LEFT is mirrored, and which that was done to.
@@ -132,10 +130,10 @@ std::vector<double> missesOf(const Undone& pair)
     std::vector<uchar> status;
     Pixels seen[2];
     const auto &camera1 = c.cameras[0].camera, &camera2 = c.cameras[1].camera;
-    cv::refract::triangulateRefractive(camera1, camera2, c.extrinsics[1].R, c.extrinsics[1].T, pair.partners.pixels1,
+    cv::refract::triangulateRefractive(camera1, camera2, c.extrinsics[1].R, c.extrinsics[1].t, pair.partners.pixels1,
                                        pair.partners.pixels2, points, status);
     cv::refract::refractiveProjectPoints(points, Vec3d(), Vec3d(), camera1, seen[0]);
-    cv::refract::refractiveProjectPoints(points, c.extrinsics[1].R, c.extrinsics[1].T, camera2, seen[1]);
+    cv::refract::refractiveProjectPoints(points, c.extrinsics[1].R, c.extrinsics[1].t, camera2, seen[1]);
     for (size_t i = 0; i < points.size(); i++)
     {
         const Point2d off1 = seen[0][i] - pair.partners.pixels1[i], off2 = seen[1][i] - pair.partners.pixels2[i];

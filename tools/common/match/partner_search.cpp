@@ -139,7 +139,7 @@ Vec2d depthInCamera(const RigModel& rig, int c, const Vec2d& depth)
     for (double z : {depth[0], std::min(depth[1], FAR*depth[0])})
         for (const Point3d& X : pointsAtDepth(rig.cameras[0], z, STEPS))
         {
-            const double there = (rig.extrinsics[c]*Vec3d(X))[2];
+            const double there = rig.extrinsics[c].apply(Vec3d(X))[2];
             if (there > 0.)             // false for NaN
                 range = Vec2d(std::min(range[0], there), std::max(range[1], there));
         }
@@ -192,7 +192,7 @@ FeaturePairs partnersNearCurves(const RigModel& rig, const CameraPair& pair, con
         return {};
     const RigidTransform place = fromTo(rig.extrinsics[pair.first], rig.extrinsics[pair.second]);
     std::vector<Mat> curves;
-    computeRefractiveEpilines(first.pixels, 1, rig.cameras[pair.first], rig.cameras[pair.second], place.R, place.T, pair.depth, curves,
+    computeRefractiveEpilines(first.pixels, 1, rig.cameras[pair.first], rig.cameras[pair.second], place.R, place.t, pair.depth, curves,
                               TOLERANCE);
     const Cells cells(second, rig.cameras[pair.second]->imageSize(), pair.search);
     const Distance distanceOf(first, second);

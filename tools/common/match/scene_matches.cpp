@@ -328,7 +328,7 @@ double residualWithoutWindows(const Calibration& calibration, const ScaledMatche
         for (int i = 0; i < 6; i++)
         {
             const int at = extrinsicsColumn(start.rig, c) + i;
-            start.covariance.at<double>(at, at) = std::pow(ANYHOW*(i < 3 ? 1. : norm(start.rig.extrinsics[c].T)), 2);
+            start.covariance.at<double>(at, at) = std::pow(ANYHOW*(i < 3 ? 1. : norm(start.rig.extrinsics[c].t)), 2);
         }
     std::vector<int> all;
     for (int i = 0; i < good.size(); i++)

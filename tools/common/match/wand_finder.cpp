@@ -31,8 +31,8 @@ BallCenter centerOfBall(const Ptr<RefractiveCamera>& camera, const DotImage& out
     if (!(norm(along) > 0))
         return none;
     along = normalize(along);
-    const Vec3d right = normalize(along.cross(std::abs(along[0]) < std::abs(along[1]) ? Vec3d(1, 0, 0) : Vec3d(0, 1, 0)));
-    const Vec3d down = normalize(along.cross(right));
+    const Matx32d across = tangents(along);
+    const Vec3d right(across.col(0).val), down(across.col(1).val);
     Vec3d center = origin + along*along.dot(Vec3d(near) - origin);
     double radius = 0.;
     for (int round = 0; round < ROUNDS; round++)
@@ -127,7 +127,7 @@ Chain WandFinder::extended(const BallPoint& point, double reach) const
         if (chain[c] >= 0 || balls_[c].empty())
             continue;
         std::vector<Point2d> pixel;
-        refractiveProjectPoints(std::vector<Point3d>{point.X}, rig_.extrinsics[c].R, rig_.extrinsics[c].T, rig_.cameras[c], pixel);
+        refractiveProjectPoints(std::vector<Point3d>{point.X}, rig_.extrinsics[c].R, rig_.extrinsics[c].t, rig_.cameras[c], pixel);
         double nearest = reach;
         for (int i = 0; i < (int)balls_[c].size(); i++)
         {
@@ -149,7 +149,7 @@ bool WandFinder::measure(BallPoint& point) const
         if (point.balls[c] >= 0)
         {
             const BallCenter center = centerOfBall(rig_.cameras[c], balls_[c][point.balls[c]].outline,
-                                                   Point3d(rig_.extrinsics[c]*Vec3d(point.X)));
+                                                   Point3d(rig_.extrinsics[c].apply(Vec3d(point.X))));
             point.centers[c] = center.pixel;
             point.radius += center.radius/point.count;
             least = std::min(least, center.radius);

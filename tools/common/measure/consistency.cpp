@@ -60,8 +60,8 @@ public:
             Camera& camera = cameras_[c];
             const Vec3d rvec = rotationVector(calibration.extrinsics[c].R);
             camera.R = toEigen(Mat(calibration.extrinsics[c].R));
-            refract::refractiveProjectPoints(m.points, rvec, calibration.extrinsics[c].T, calibration.cameras[c].camera, camera.predicted);
-            camera.derivatives = differentiatePoints(calibration.cameras[c].camera, m.points, rvec, calibration.extrinsics[c].T);
+            refract::refractiveProjectPoints(m.points, rvec, calibration.extrinsics[c].t, calibration.cameras[c].camera, camera.predicted);
+            camera.derivatives = differentiatePoints(calibration.cameras[c].camera, m.points, rvec, calibration.extrinsics[c].t);
             camera.column = columnsOf(rig, (int)c).lens;
             camera.place = extrinsicsColumn(rig, (int)c);
         }

@@ -29,7 +29,7 @@ std::vector<CameraDerivatives> differentiateCameras(const Calibration& calibrati
     for (size_t c = 0; c < calibration.cameras.size(); c++)
     {
         const RigidTransform& cam_from_cam1 = calibration.extrinsics[c];
-        cameras.push_back({differentiatePoints(calibration.cameras[c].camera, points, rotationVector(cam_from_cam1.R), cam_from_cam1.T),
+        cameras.push_back({differentiatePoints(calibration.cameras[c].camera, points, rotationVector(cam_from_cam1.R), cam_from_cam1.t),
                            toEigen(Mat(cam_from_cam1.R)), columnsOf(rig, (int)c).lens, c ? extrinsicsColumn(rig, (int)c) : 0});
     }
     return cameras;

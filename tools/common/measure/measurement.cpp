@@ -80,7 +80,7 @@ Measurement measureRig(const Calibration& calibration, const RigPixels& pixels, 
     {
         cameras.push_back(calibration.cameras[c].camera);
         Rs.push_back(Mat(calibration.extrinsics[c].R));
-        Ts.push_back(Mat(calibration.extrinsics[c].T));
+        Ts.push_back(Mat(calibration.extrinsics[c].t));
     }
     Mat covariance;
     refract::triangulateRefractive(cameras, Rs, Ts, pixels, result.points, result.status, refract::TRIANGULATE_OPTIMAL,

@@ -105,7 +105,7 @@ static PointsAtRange pointsAtRange(const Calibration& calibration, const std::ve
     {
         const Ptr<RefractiveCamera>& camera = calibration.cameras[c].camera;
         std::vector<Point2d> pixels;
-        refractiveProjectPoints(result.points, Mat(calibration.extrinsics[c].R), calibration.extrinsics[c].T, camera, pixels);
+        refractiveProjectPoints(result.points, Mat(calibration.extrinsics[c].R), calibration.extrinsics[c].t, camera, pixels);
         const Rect2d image(Point2d(-0.5, -0.5), Size2d(camera->imageSize()));
         for (Point2d& pixel : pixels)
             if (!image.contains(pixel))         // false for NaN

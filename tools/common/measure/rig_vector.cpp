@@ -5,6 +5,7 @@
 #include "calibrate/parameter_columns.hpp"
 #include "calibrate/window_face.hpp"
 #include "measure/eigen_matrix.hpp"
+#include "window/parameters.hpp"
 #include <opencv2/calib3d.hpp>
 #include <algorithm>
 
@@ -57,11 +58,9 @@ void setTargets(RigModel& rig, const VectorXd& numbers)
 VectorXd windowNumbersOf(const RigModel& rig, int owner, int camera, const VectorXd& numbers)
 {
     const RigidTransform there = fromTo(placeOfCamera(rig, owner, numbers), placeOfCamera(rig, camera, numbers));
-    const GlassWindow shared = windowOf(rig.cameras[owner]->window(), columnsOf(rig, owner), numbers.data());
-    const ParameterColumns at = columnsOf(*rig.cameras[camera]);
-    VectorXd window = VectorXd::Zero(at.end);
-    putWindow(seenFrom(shared, there), at, window.data());
-    return window.tail(at.end - at.window);
+    const GlassWindow shared = withParameters(rig.cameras[owner]->window(), numbers.data() + columnsOf(rig, owner).window);
+    const std::vector<double> window = windowParameters(seenFrom(shared, there));
+    return VectorXd::Map(window.data(), window.size());
 }
 
 /** Pose in a camera in one of its images, and its derivatives (6x6) by the pose in camera 1 and by the rotation vectors and
@@ -84,7 +83,7 @@ private:
     MatrixXd follow(const RigidTransform& transform, MatrixXd& byTransform)
     {
         Mat r, t, rr1, rt1, rr2, rt2, tr1, tt1, tr2, tt2;
-        composeRT(rvec, tvec, rotationVector(transform.R), transform.T, r, t, rr1, rt1, rr2, rt2, tr1, tt1, tr2, tt2);
+        composeRT(rvec, tvec, rotationVector(transform.R), transform.t, r, t, rr1, rt1, rr2, rt2, tr1, tt1, tr2, tt2);
         rvec = Vec3d(r.ptr<double>());
         tvec = Vec3d(t.ptr<double>());
         MatrixXd byBefore(6, 6);
@@ -123,16 +122,17 @@ VectorXd toVector(const RigModel& rig)
     {
         const ParameterColumns at = columnsOf(rig, c);
         numbers.segment(at.lens, at.lensCount) = toEigen(rig.cameras[c]->lensParameters());
-        putWindow(rig.cameras[c]->window(), at, numbers.data());
+        const std::vector<double> window = windowParameters(rig.cameras[c]->window());
+        std::copy(window.begin(), window.end(), numbers.data() + at.window);
         if (c == 0)
             continue;
         put(rotationVector(rig.extrinsics[c].R), extrinsicsColumn(rig, c), numbers);
-        put(rig.extrinsics[c].T, extrinsicsColumn(rig, c) + 3, numbers);
+        put(rig.extrinsics[c].t, extrinsicsColumn(rig, c) + 3, numbers);
     }
     const int targets = columnCount(rig);
     numbers[targets] = rig.targetScale;
     put(rotationVector(rig.targetMotion.R), targets + 1, numbers);
-    put(rig.targetMotion.T, targets + 4, numbers);
+    put(rig.targetMotion.t, targets + 4, numbers);
     return numbers;
 }
 
@@ -147,7 +147,7 @@ void setParameters(RigModel& rig, const VectorXd& p)
     for (int c = 0; c < (int)rig.cameras.size(); c++)
     {
         setLens(rig, c, p);
-        rig.cameras[c]->setWindow(windowOf(rig.cameras[c]->window(), columnsOf(rig, c), p.data()));
+        rig.cameras[c]->setWindow(withParameters(rig.cameras[c]->window(), p.data() + columnsOf(rig, c).window));
         if (c > 0)
             rig.extrinsics[c] = placeOfCamera(rig, c, p);
     }
@@ -162,10 +162,9 @@ RigModel withVector(const RigModel& rig, const VectorXd& numbers)
         result.extrinsics[c] = placeOfCamera(rig, c, numbers);
     for (int c = 0; c < (int)rig.cameras.size(); c++)
     {
-        const ParameterColumns at = columnsOf(rig, c);
         setLens(result, c, numbers);
         const int owner = ownerOf(rig, c);
-        GlassWindow window = windowOf(rig.cameras[c]->window(), at, numbers.data());
+        GlassWindow window = withParameters(rig.cameras[c]->window(), numbers.data() + columnsOf(rig, c).window);
         if (owner < c)
             window = seenFrom(result.cameras[owner]->window(), fromTo(result.extrinsics[owner], result.extrinsics[c]));
         window.distance = std::max(0., window.distance);        // between equal media any will do, and 0 is given

@@ -124,7 +124,7 @@ std::string tapeMeasures(const RigCalibration& c)
     {
         const cv::refract::GlassWindow window = c.fit.rig.cameras[k]->window();
         if (k > 0)
-            apart.push_back(format("%.4g", cv::norm(c.fit.rig.extrinsics[k].T)));
+            apart.push_back(format("%.4g", cv::norm(c.fit.rig.extrinsics[k].t)));
         if (!isRound(window) && hasDifferentMedia(window))
             away.push_back(format("%.4g", window.distance));
     }

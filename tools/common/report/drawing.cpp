@@ -90,7 +90,7 @@ std::vector<Curve> curvesOf(const Calibration& pair, const std::vector<Point2d>&
 {
     std::vector<cv::Mat> lines;
     cv::refract::computeRefractiveEpilines(points, 1, pair.cameras[0].camera, pair.cameras[1].camera, pair.extrinsics[1].R,
-                                           pair.extrinsics[1].T, depth, lines);
+                                           pair.extrinsics[1].t, depth, lines);
     std::vector<Curve> curves;
     for (const cv::Mat& line : lines)
         curves.push_back(line.empty() ? Curve() : Curve(line.begin<Point2d>(), line.end<Point2d>()));

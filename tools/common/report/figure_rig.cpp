@@ -1,6 +1,7 @@
 // This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
 // SPDX-License-Identifier: Apache-2.0
 
+#include "calibrate/rigid_transform.hpp"
 #include "calibrate/window_face.hpp"
 #include "console/table.hpp"
 #include "report/figures.hpp"
@@ -66,7 +67,7 @@ public:
             const RigidTransform cam1_from_board = transformOf(c.fit.rvecs[k], c.fit.tvecs[k]);
             for (const Point3d& X : view.objectPoints)
                 if (view.hasGlass())
-                    points_.push_back(cam1_from_board*Vec3d(X));
+                    points_.push_back(cam1_from_board.apply(Vec3d(X)));
         }
         for (const Vec3d& X : points_)
             middle_ += X*(1./(double)points_.size());
@@ -116,11 +117,14 @@ public:
             return {};
         const GlassWindow window = rig_.cameras[owner]->window();
         const Vec3d n = rig_.extrinsics[owner].R.t()*(isRound(window) ? Vec3d(0, 0, 1) : window.normal);
-        const Vec3d u = normalize(n.cross(std::abs(n[1]) < 0.9 ? Vec3d(0, 1, 0) : Vec3d(1, 0, 0))), v = n.cross(u);
+        const Matx32d axes = tangents(n);
         std::vector<Point2f> flat;
         std::vector<int> hull;
         for (const Vec3d& X : through)
-            flat.emplace_back((float)u.dot(X - through[0]), (float)v.dot(X - through[0]));
+        {
+            const Vec2d p = axes.t()*(X - through[0]);
+            flat.emplace_back((float)p[0], (float)p[1]);
+        }
         convexHull(flat, hull);
         Line outline;
         for (int i : hull)
@@ -153,7 +157,7 @@ private:
         std::vector<Vec3d> origins, directions, innerOrigins, inner;
         refractiveUnprojectPoints(pixels, origins, directions, through);
         refractiveUnprojectPoints(pixels, innerOrigins, inner, bare);
-        const Vec3d end = rig_.extrinsics[camera]*middle_;
+        const Vec3d end = rig_.extrinsics[camera].apply(middle_);
         std::vector<Line> lines;
         for (size_t i = 0; i < pixels.size(); i++)
         {

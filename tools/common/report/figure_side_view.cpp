@@ -76,7 +76,7 @@ public:
             const RigidTransform cam_from_board = transformOf(rvec, tvec);
             std::vector<Vec3d> points;
             for (const Point3d& X : c_.data.views[c_.fit.views[k]].objectPoints)
-                points.push_back(cam_from_board*Vec3d(X));
+                points.push_back(cam_from_board.apply(Vec3d(X)));
             outlines.push_back(outlineOf(onPaper(points)));
         }
         return outlines;

@@ -241,7 +241,7 @@ Mat render(const Target& target, const BoardPose& pose, const Viewpoint& view, c
 BoardPose inOtherCamera(const BoardPose& pose, const RigidTransform& cam2_from_cam1)
 {
     const RigidTransform board = cam2_from_cam1*transformOf(pose.rvec, pose.tvec);
-    return {rotationVector(board.R), board.T};
+    return {rotationVector(board.R), board.t};
 }
 
 TrueLine trueLine(const LightSource& source, bool window, const TexturedScene& scene, const Viewpoint& camera)

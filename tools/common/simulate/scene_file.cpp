@@ -164,18 +164,16 @@ private:
     {
         const double degree = CV_PI/180, axis = rng_.uniform(0., 2*CV_PI);
         const double tilt = degree*rng_.uniform(tilt_[0], tilt_[1]), roll = degree*rng_.uniform(-roll_, roll_);
-        cv::Matx33d tilted, rolled;
-        cv::Rodrigues(tilt*Vec3d(std::cos(axis), std::sin(axis), 0), tilted);
-        cv::Rodrigues(Vec3d(0, 0, roll), rolled);
+        const cv::Matx33d R = rotationMatrix(tilt*Vec3d(std::cos(axis), std::sin(axis), 0))*rotationMatrix(Vec3d(0, 0, roll));
         const cv::Ptr<cv::refract::RefractiveCamera>& camera = rig_.cameras[0].camera;
         const cv::Matx33d K = camera->cameraMatrix();
         const double z = rng_.uniform(distance_[0], distance_[1]);
         const Vec3d centre(z*(rng_.uniform(0., (double)camera->imageSize().width) - K(0, 2))/K(0, 0),
                            z*(rng_.uniform(0., (double)camera->imageSize().height) - K(1, 2))/K(1, 1), z);
         BoardPose pose;
-        cv::Rodrigues(tilted*rolled, pose.rvec);
+        pose.rvec = rotationVector(R);
         const Vec3d first(target_.objectPoints().front()), last(target_.objectPoints().back());
-        pose.tvec = centre - tilted*rolled*(0.5*(first + last));
+        pose.tvec = centre - R*(0.5*(first + last));
         return pose;
     }
 

@@ -38,7 +38,7 @@ public:
             for (int c = 0; c < 2; c++)
             {
                 std::vector<cv::Point2d> pixel;
-                const Vec3d T = c ? rig.calibration().extrinsics[c].T : Vec3d();
+                const Vec3d T = c ? rig.calibration().extrinsics[c].t : Vec3d();
                 const Matx33d R = c ? rig.calibration().extrinsics[c].R : Matx33d::eye();
                 cv::refract::refractiveProjectPoints(std::vector<Vec3d>{X}, R, T, rig.calibration().cameras[c].camera, pixel);
                 pixels[c].push_back(pixel[0]);
@@ -47,7 +47,7 @@ public:
         Mat points, status, covariance;
         const Calibration& calibration = rig.calibration();
         cv::refract::triangulateRefractive(calibration.cameras[0].camera, calibration.cameras[1].camera, calibration.extrinsics[1].R,
-                                           calibration.extrinsics[1].T, pixels[0], pixels[1], points, status, 0, 0.,
+                                           calibration.extrinsics[1].t, pixels[0], pixels[1], points, status, 0, 0.,
                                            calibration.covariance, covariance);
         for (int i = 0; i < (int)variances_.size(); i++)
         {

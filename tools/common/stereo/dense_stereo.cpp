@@ -195,7 +195,7 @@ void findPoints(const RectifiedRig& rig, const RectifiedImages& rectified, Dense
     const Calibration& c = rig.calibration();
     Mat points;
     cv::refract::refractiveReprojectImageTo3D(result.disparity, points, c.cameras[0].camera, c.cameras[1].camera, c.extrinsics[1].R,
-                                              c.extrinsics[1].T, rig.R1,
+                                              c.extrinsics[1].t, rig.R1,
                                               rig.R2, rig.P1, rig.P2, result.depth1, result.depth2);
     cv::transform(points, result.points, rig.R1.t());
     removeInconsistentPoints(rig, rectified, result.disparity, result.points);

@@ -105,7 +105,7 @@ void removeInconsistentPoints(const RectifiedRig& rig, const RectifiedImages& re
         {
             const Mat row = points.row(y);
             cv::refract::refractiveProjectPoints(row, cv::Vec3d(), cv::Vec3d(), c.cameras[0].camera, seen1);
-            cv::refract::refractiveProjectPoints(row, c.extrinsics[1].R, c.extrinsics[1].T, c.cameras[1].camera, seen2);
+            cv::refract::refractiveProjectPoints(row, c.extrinsics[1].R, c.extrinsics[1].t, c.cameras[1].camera, seen2);
             for (int x = 0; x < points.cols; x++)
             {
                 const Vec2f raw1 = rectified.map[0].at<Vec2f>(y, x);

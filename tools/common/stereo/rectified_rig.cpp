@@ -28,7 +28,7 @@ RectifiedRig::RectifiedRig(const Calibration& calibration, const Vec2d& depthRan
     // Each image keeps its own principal point: of cameras that look at one place, a common one shows nothing of it.
     const int flags = 0;
     rowError = cv::refract::refractiveStereoRectify(cameras[0].camera, cameras[1].camera, calibration.extrinsics[1].R,
-                                                    calibration.extrinsics[1].T, size_,
+                                                    calibration.extrinsics[1].t, size_,
                                                     depthRange, R1, R2, P1, P2, Q, flags);
     const Vec3d base = centreOf(P2) - centreOf(P1);
     vertical_ = std::abs(base[1]) > std::abs(base[0]);
@@ -105,7 +105,7 @@ RectifiedImages rectify(const RectifiedRig& rig, const Mat& image1, const Mat& i
     const cv::Size size(cvFloor(rig.size().width*scale), cvFloor(rig.size().height*scale));
     for (int c = 0; c < 2; c++)
     {
-        const Mat T = c ? Mat(rig.calibration().extrinsics[c].T) : Mat(), P = scaled(c ? rig.P2 : rig.P1, scale);
+        const Mat T = c ? Mat(rig.calibration().extrinsics[c].t) : Mat(), P = scaled(c ? rig.P2 : rig.P1, scale);
         const auto mapOf = [&](const cv::Ptr<cv::refract::RefractiveCamera>& camera) {
             Mat map;
             cv::refract::initRefractiveStereoRectifyMap(camera, c ? depth2 : depth1, c ? rig.R2 : rig.R1, P, T, size, CV_32FC2, map,

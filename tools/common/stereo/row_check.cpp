@@ -43,7 +43,7 @@ public:
             return;
         PointDerivatives derivatives[2];
         for (int c = 0; c < 2; c++)
-            derivatives[c] = differentiatePoints(model_.cameras[c], points, rotationVector(model_.extrinsics[c].R), model_.extrinsics[c].T);
+            derivatives[c] = differentiatePoints(model_.cameras[c], points, rotationVector(model_.extrinsics[c].R), model_.extrinsics[c].t);
         for (int i = 0; i < n; i++)
             addRow(derivatives, points[i].z, i, rig.vertical());
     }
@@ -126,7 +126,7 @@ std::vector<Cause> causesOf(const RigModel& model)
     for (int k = 0; k < 3; k++)
     {
         turn.directions.push_back(along(place + k, TURN));
-        moved.directions.push_back(along(place + 3 + k, SHIFT*norm(model.extrinsics[1].T)));
+        moved.directions.push_back(along(place + 3 + k, SHIFT*norm(model.extrinsics[1].t)));
     }
     causes.push_back(turn);
     causes.push_back(moved);

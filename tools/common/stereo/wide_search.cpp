@@ -38,7 +38,7 @@ std::vector<float> depthsOfFeatures(const Calibration& calibration, const Mat& i
     const auto &camera1 = calibration.cameras[0].camera, &camera2 = calibration.cameras[1].camera;
     std::vector<Point3d> points, known;
     std::vector<uchar> status;
-    cv::refract::triangulateRefractive(camera1, camera2, calibration.extrinsics[1].R, calibration.extrinsics[1].T, pixels1,
+    cv::refract::triangulateRefractive(camera1, camera2, calibration.extrinsics[1].R, calibration.extrinsics[1].t, pixels1,
                                        pixels2, points, status);
     std::vector<Point2d> known1, known2;
     for (size_t i = 0; i < points.size(); i++)
@@ -52,7 +52,7 @@ std::vector<float> depthsOfFeatures(const Calibration& calibration, const Mat& i
         return depths;
     std::vector<Point2d> seen1, seen2;
     cv::refract::refractiveProjectPoints(known, cv::Vec3d(), cv::Vec3d(), camera1, seen1);
-    cv::refract::refractiveProjectPoints(known, calibration.extrinsics[1].R, calibration.extrinsics[1].T, camera2, seen2);
+    cv::refract::refractiveProjectPoints(known, calibration.extrinsics[1].R, calibration.extrinsics[1].t, camera2, seen2);
     for (size_t i = 0; i < known.size(); i++)
         if (cv::norm(seen1[i] - known1[i]) < SAME_POINT && cv::norm(seen2[i] - known2[i]) < SAME_POINT)
             depths.push_back((float)known[i].z);

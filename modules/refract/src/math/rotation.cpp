@@ -17,8 +17,7 @@ Matx33d rotationMatrix(const Vec3d& rvec, Matx33d* jacobian)
     return R;
 }
 
-//! Unit quaternion (w, x, y, z), w >= 0, found from the largest of its elements: no digits are lost.
-static Vec4d quaternionOf(const Matx33d& R)
+Vec4d quaternionOf(const Matx33d& R)
 {
     const double trace = R(0, 0) + R(1, 1) + R(2, 2);
     Vec4d squares(trace, 2*R(0, 0) - trace, 2*R(1, 1) - trace, 2*R(2, 2) - trace);      // 4 q[i]^2 - 1
@@ -57,6 +56,12 @@ Matx33d Rotation::derivativeOf(const Vec3d& v) const
             d(k, i) = column[k];
     }
     return d;
+}
+
+Matx32d tangents(const Vec3d& u)
+{
+    const Vec3d a = normalize(u.cross(std::abs(u[0]) < 0.6 ? Vec3d(1, 0, 0) : Vec3d(0, 1, 0))), b = u.cross(a);
+    return Matx32d(a[0], b[0], a[1], b[1], a[2], b[2]);
 }
 
 Matx33d turnToZ(const Vec3d& a)

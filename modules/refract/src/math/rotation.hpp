@@ -16,6 +16,12 @@ Matx33d rotationMatrix(const Vec3d& rvec, Matx33d* jacobian = NULL);
 //! The rotation vector of a rotation matrix.
 Vec3d rotationVector(const Matx33d& R);
 
+//! Unit quaternion (w, x, y, z), w >= 0, found from the largest of its elements: no digits are lost.
+Vec4d quaternionOf(const Matx33d& R);
+
+//! Columns: two unit vectors across a unit vector u, and across each other; with u they are right-handed.
+Matx32d tangents(const Vec3d& u);
+
 //! Turns a unit vector to the z axis, the shortest way.
 Matx33d turnToZ(const Vec3d& a);
 

@@ -160,12 +160,6 @@ void errorsAtEnds(const MatchedCameras& pair, const PixelMatches& matches, const
     });
 }
 
-Matx<double, 3, 2> tangents(const Vec3d& u)
-{
-    const Vec3d a = normalize(u.cross(std::abs(u[0]) < 0.6 ? Vec3d(1, 0, 0) : Vec3d(0, 1, 0))), b = u.cross(a);
-    return Matx<double, 3, 2>(a[0], b[0], a[1], b[1], a[2], b[2]);
-}
-
 //! The most likely pose of those that N parameters reach.
 template<int N, typename Move>
 double minimizeErrors(const MatchedCameras& pair, const PixelMatches& matches, RigidTransform& pose, int iterations, const Move& move)

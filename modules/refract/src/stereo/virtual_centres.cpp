@@ -3,6 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "stereo/virtual_centres.hpp"
+#include "math/rotation.hpp"
 #include "points/plane.hpp"
 #include <numeric>
 
@@ -21,7 +22,7 @@ double paraxialTau(const Camera& camera)
 double paraxialMagnification(const Camera& camera)
 {
     const double SMALL = 1e-4;
-    const Vec3d n = camera.layers().normal(), across = normalize(n.cross(std::abs(n[0]) < 0.6 ? Vec3d(1, 0, 0) : Vec3d(0, 1, 0)));
+    const Vec3d n = camera.layers().normal(), across(tangents(n).col(0).val);
     const Vec3d w[] = { normalize(n + SMALL*across), normalize(n - SMALL*across) };
     const double x[] = { w[0][0], w[1][0] }, y[] = { w[0][1], w[1][1] }, z[] = { w[0][2], w[1][2] };
     Rays rays;

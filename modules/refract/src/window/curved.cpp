@@ -3,6 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "window/curved.hpp"
+#include "math/rotation.hpp"
 
 namespace cv { namespace refract {
 
@@ -13,8 +14,9 @@ static CurvedFace faceBetween(double before, double after)
 
 Matx33d tubeAxes(const Vec3d& axis)
 {
-    const Vec3d a = normalize(axis), e1 = normalize(a.cross(std::abs(a[0]) < 0.6 ? Vec3d(1, 0, 0) : Vec3d(0, 1, 0))), e2 = a.cross(e1);
-    return Matx33d(e1[0], e1[1], e1[2], e2[0], e2[1], e2[2], a[0], a[1], a[2]);
+    const Vec3d a = normalize(axis);
+    const Matx32d e = tangents(a);
+    return Matx33d(e(0, 0), e(1, 0), e(2, 0), e(0, 1), e(1, 1), e(2, 1), a[0], a[1], a[2]);
 }
 
 std::vector<CurvedFace> tubeFaces(const GlassWindow& window)
