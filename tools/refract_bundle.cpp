@@ -182,7 +182,7 @@ void explain(const Options& o, const Calibration& file, const Matches& matches, 
         options.free = free;
         const BundleStart freer = startWith(o, options, file);
         requireScale(freer, o.start, matches, lengths);
-        return adjustBundle(freer, matches, lengths, o.robust, ENOUGH_ITERATIONS);
+        return adjustBundle(freer, matches, lengths, o.robust);
     });
     findings.contradictions.back() += explanation.empty() ? "; no single name of --free explains it" : "; " + explanation + " (--free)";
 }
@@ -249,7 +249,7 @@ MeasuredBundle measuredBundle(const Options& o, const Matches& matches, const Gi
             for (size_t i = 0; i < matches.names.size(); i++)
                 if (!(*only)[c][i])
                     seen.pixels[c][i] = cv::Point2d(NAN, NAN);
-        return adjustBundle(start, seen, measures.lengths, !only && o.robust, ENOUGH_ITERATIONS);
+        return adjustBundle(start, seen, measures.lengths, !only && o.robust);
     };
     return measured;
 }
@@ -259,13 +259,15 @@ BundleFindings examine(const Options& o, const Calibration& file, const Matches&
                        const BundleStart& start, const BundleAdjustment& adjustment)
 {
     const double knownSigma = knownNoise(o, file, matches);
-    const auto adjust = [&](const BundleStart& from) { return adjustBundle(from, matches, lengths, o.robust, ENOUGH_ITERATIONS); };
+    const auto adjust = [&](const BundleStart& from) { return adjustBundle(from, matches, lengths, o.robust); };
     const MeasuredBundle measured = measuredBundle(o, matches, lengths, start);
     BundleFindings findings = findingsOf(start, lengths, adjustment, adjust, knownSigma, o.maxRms, &measured);
     const bool areNoisy = isNoisy(findings.pixelStd, knownSigma);
-    std::string mistake = areNoisy && !o.robust ? wrongMatches(start, matches, lengths, knownSigma) : "";
+    const double sigma = adjustment.fit.sigma;
+    std::string mistake = areNoisy && !o.robust && !findings.areMeasuresWrong ? wrongMatches(start, matches, lengths, sigma, knownSigma)
+                                                                              : "";
     if (mistake.empty() && areNoisy)
-        mistake = lateCamera(start, matches, lengths, o.robust, adjustment.fit.sigma);
+        mistake = lateCamera(start, matches, lengths, o.robust, sigma);
     // Pixels that fit without the measures are those of the cameras they are given for.
     if (mistake.empty() && !findings.contradictions.empty() && (areNoisy || !findings.areMeasuresWrong))
         mistake = exchangedCameras(start, matches, lengths, o.robust, knownSigma);
@@ -298,10 +300,13 @@ int bundleMatches(const Options& options, const Calibration& file, const Command
     }
     catch (const Failure&)
     {
-        const std::string exchange = exchangedCameras(start, matches, lengths, options.robust, knownNoise(options, file, matches));
-        if (exchange.empty())
+        const double knownSigma = knownNoise(options, file, matches), endless = std::numeric_limits<double>::infinity();
+        std::string mistake = options.robust ? "" : wrongMatches(start, matches, lengths, endless, knownSigma);
+        if (mistake.empty())
+            mistake = exchangedCameras(start, matches, lengths, options.robust, knownSigma);
+        if (mistake.empty())
             throw;
-        std::cerr << "refract_bundle: " << exchange << "; as given they have no fit, and nothing is written.\n";
+        std::cerr << "refract_bundle: " << mistake << "; as given they have no fit, and nothing is written.\n";
         return LIMIT_NOT_MET;
     }
     const BundleFindings findings = examine(options, file, matches, lengths, start, adjustment);

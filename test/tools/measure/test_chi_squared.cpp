@@ -43,6 +43,7 @@ TEST_CASE("The z-score of a chi squared is as rare", "[distributions]")
     {
         CHECK(zScoreOfChiSquared(dof, 0.) == 0.);
         CHECK(zScoreOfChiSquared(dof, -1.) == 0.);
+        CHECK(upperTailChiSquared(dof, std::numeric_limits<double>::infinity()) == 0.);
         CHECK(std::isinf(zScoreOfChiSquared(dof, std::numeric_limits<double>::infinity())));
     }
 }

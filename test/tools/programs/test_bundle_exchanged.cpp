@@ -107,22 +107,22 @@ TEST_CASE("refract_bundle does not believe a rig that is far from its start", "[
 
 TEST_CASE("refract_bundle blames no lengths where the lenses are wrong", "[tools][bundle][exchanged]")
 {
-    for (double factor : {0.5, 0.7, 1.5, 2.})
+    struct Case { double factor; int cameras; bool domes; };
+    for (const Case& one : {Case{0.5, 3, false}, {0.7, 3, false}, {1.5, 2, false}, {2., 2, false}, {0.7, 3, true}, {2., 2, true}})
     {
-        const int cameras = factor < 1 ? 3 : 2;
-        Wand wand = wandOf(8500 + cameras, cameras, false);
+        Wand wand = wandOf(8500 + one.cameras, one.cameras, one.domes);
         for (Ptr<RefractiveCamera>& camera : wand.start.cameras)
         {
             Mat K = camera->cameraMatrix();
-            K.at<double>(0, 0) *= factor;
-            K.at<double>(1, 1) *= factor;
+            K.at<double>(0, 0) *= one.factor;
+            K.at<double>(1, 1) *= one.factor;
             camera = RefractiveCamera::create(K, camera->distCoeffs(), camera->window());
             camera->setImageSize(SIZE);
         }
         const TemporaryFolder f;
-        const ToolResult result = bundleOf(wand, false, f);
-        CAPTURE(scenes::seed(), factor, result.out, result.err);
-        CHECK(result.code == 2);
+        const ToolResult result = bundleOf(wand, one.domes, f);
+        CAPTURE(scenes::seed(), one.factor, one.domes, result.out, result.err);
+        CHECK(result.code != 0);
         CHECK_FALSE(mentions(result.err, "the lengths of"));
         CHECK_FALSE(mentions(result.err, "exchanged"));
     }

@@ -168,15 +168,26 @@ std::vector<CameraCorrection> correctionsOf(const BundleStart& start, const Fit&
     return corrections;
 }
 
-//! Whether the rest is as the start says. If not, measures need not be what is wrong.
-bool isSound(const BundleStart& start, const BundleAdjustment& rest, double knownSigma)
+/** Whether the rest is as the start says. If not, measures need not be what is wrong. Without them its scale is what windows tell, which
+may be next to nothing: only a common factor of lengths asks for it. */
+bool isRestSound(const BundleStart& start, const ContradictedMeasures& measures, double knownSigma)
 {
+    Fit fit = measures.rest.fit;
+    const double base = fit.rig.cameras.size() > 1 ? norm(fit.rig.extrinsics[1].t) : 0.;
+    for (RigidTransform& place : fit.rig.extrinsics)
+        place.t *= base > 0. && !measures.isFactor ? norm(start.rig.extrinsics[1].t)/base : 1.;
     BundleFindings findings;
-    findings.corrections = correctionsOf(start, rest.fit);
-    findFarSteps(start, 0., findings);         // not known, it is no sooner right
-    findNoise(rest, knownSigma, findings);
-    const auto isWindowFar = [&](const CameraCorrection& c) { return c.name == "normal" && c.place.by > FAR_DEG; };
-    return findings.contradictions.empty() && std::none_of(findings.corrections.begin(), findings.corrections.end(), isWindowFar);
+    findings.corrections = correctionsOf(start, fit);
+    findFarSteps(start, 0., findings);                  // not known, it is no sooner right
+    findNoise(measures.rest, knownSigma, findings);
+    for (size_t c = 0; c < findings.corrections.size() && findings.contradictions.empty(); c++)
+    {
+        const GlassWindow window = fit.rig.cameras[c]->window();
+        const double by = findings.corrections[c].place.by;
+        if ((isRound(window) ? by/window.radius*DEGREES : by) > FAR_DEG)
+            return false;
+    }
+    return findings.contradictions.empty();
 }
 
 } // namespace
@@ -204,7 +215,7 @@ BundleFindings findingsOf(const BundleStart& start, const GivenLengths& lengths,
     if (fit.dof < FEW)
         findings.weak.push_back("so few data (every +- may be 1.4 times larger)");
     const ContradictedMeasures measures = measured ? contradictedMeasures(*measured, adjustment) : ContradictedMeasures();
-    findings.areMeasuresWrong = !measures.sentence.empty() && isSound(start, measures.rest, knownSigma);
+    findings.areMeasuresWrong = !measures.sentence.empty() && isRestSound(start, measures, knownSigma);
     findings.pixelStd = findings.areMeasuresWrong ? measures.rest.fit.sigma : fit.sigma;
     const std::string contradiction = findings.areMeasuresWrong ? measures.sentence : contradictionOf(start, adjustment, adjust);
     if (!contradiction.empty())

@@ -112,11 +112,13 @@ public:
     {
         vague_ = bundle.adjust(vagueMeasures(), nullptr);
         used_ = rightPixels(bundle, given, vague_);
+        robust_ = vague_;
         if (used_ != vague_.used)
             vague_ = bundle.adjust(vagueMeasures(), &used_);
         given_ = used_ == given.used ? given : bundle.adjust(bundle.measures, &used_);
     }
     const BundleAdjustment& vague() const { return vague_; }
+    const BundleAdjustment& robust() const { return robust_; }      //!< the same before all pixels that are left count
     const BundleAdjustment& given() const { return given_; }
     double costOf(const BundleAdjustment& adjustment) const { return adjustment.costAt(vague_.fit.sigma); }
 
@@ -144,7 +146,7 @@ private:
     }
 
     const MeasuredBundle& bundle_;
-    BundleAdjustment vague_, given_;
+    BundleAdjustment robust_, vague_, given_;
     Used used_;
 };
 
@@ -219,9 +221,10 @@ public:
           least_(comparison_.costOf(comparison_.vague())),
           count_((int)bundle.measures.lengths.list.size() + 3*(int)bundle.measures.positions.size()) {}
 
-    const BundleAdjustment& rest() const { return comparison_.vague(); }
+    const BundleAdjustment& rest() const { return comparison_.robust(); }
+    bool isFactor() const { return isFactor_; }         //!< of text()
 
-    std::string text() const
+    std::string text()
     {
         if (isExplained(given_))
             return "";
@@ -260,12 +263,13 @@ private:
         return freed;
     }
 
-    std::string said(const Hypothesis& one, const BundleAdjustment& adjustment, double gain) const
+    std::string said(const Hypothesis& one, const BundleAdjustment& adjustment, double gain)
     {
+        isFactor_ = isFactor_ || one.kind == Hypothesis::FACTOR;
         return textOf(one, bundle_, adjustment) + format(" (%.0f standard deviations)", zScoreOfChiSquared(one.count, gain));
     }
 
-    std::string textOfLengths(const Freed& whole) const
+    std::string textOfLengths(const Freed& whole)
     {
         if (whole.what[0].count > 1 && suspectsOf(whole).empty())
         {
@@ -290,7 +294,7 @@ private:
     }
 
     //! Of those that must be free for the rest to fit, tried with more until it does; of all of their kind, where these are many.
-    std::string textOfSingles(const Freed& whole) const
+    std::string textOfSingles(const Freed& whole)
     {
         const size_t MORE = 2;
         const double gain = given_ - whole.cost;
@@ -307,7 +311,7 @@ private:
     }
 
     //! Each of them by itself: what it would cost to believe it.
-    std::string textOfNeeded(Freed freed) const
+    std::string textOfNeeded(Freed freed)
     {
         std::string text;
         for (const Hypothesis& one : std::vector<Hypothesis>(freed.what))
@@ -327,6 +331,7 @@ private:
     const Comparison comparison_;
     const double given_, least_;
     const int count_;
+    bool isFactor_ = false;
 };
 
 } // namespace
@@ -337,12 +342,12 @@ ContradictedMeasures contradictedMeasures(const MeasuredBundle& bundle, const Bu
         return {};
     try
     {
-        const Snooping snooping(bundle, adjustment);
+        Snooping snooping(bundle, adjustment);
         const std::string text = snooping.text();
         if (text.empty())
             return {};
         return {text + ": correct it or leave it out; until then pixels that are called wrong may be right, and windows are bent",
-                snooping.rest()};
+                snooping.isFactor(), snooping.rest()};
     }
     catch (const Failure&)              // nothing else tells what they say
     {

@@ -36,6 +36,7 @@ struct MeasuredBundle
 struct ContradictedMeasures
 {
     std::string sentence;       //!< which contradict the rest; empty: none does
+    bool isFactor = false;      //!< all lengths do, by one factor
     BundleAdjustment rest;      //!< to which measures say next to nothing
 };
 

@@ -76,10 +76,11 @@ std::string exchangedCameras(const BundleStart& start, const Matches& matches, c
     return "";
 }
 
-std::string wrongMatches(const BundleStart& start, const Matches& matches, const GivenLengths& lengths, double knownSigma)
+std::string wrongMatches(const BundleStart& start, const Matches& matches, const GivenLengths& lengths, double sigma, double knownSigma)
 {
+    const double EXPLAINS = 0.5;                            // of the noise
     BundleAdjustment adjustment;
-    if (!fits(start, matches, lengths, true, knownSigma, adjustment) || adjustment.usedPixels == adjustment.seenPixels)
+    if (!fits(start, matches, lengths, true, knownSigma, adjustment) || !(adjustment.fit.sigma < EXPLAINS*sigma))
         return "";
     std::vector<std::string> names;
     for (const int i : adjustment.outliers())

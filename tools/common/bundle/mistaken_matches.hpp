@@ -13,9 +13,9 @@ the start, or contradict something that is right, or have no fit: so this asks w
 @param knownSigma as of findingsOf @return a sentence; empty: no exchange explains it */
 std::string exchangedCameras(const BundleStart& start, const Matches& matches, const GivenLengths& lengths, bool robust, double knownSigma);
 
-/** Whether wrong matches, which were all to be taken as right, are why nothing fits: whether the rest fits without them.
-@return a sentence; empty: it does not */
-std::string wrongMatches(const BundleStart& start, const Matches& matches, const GivenLengths& lengths, double knownSigma);
+/** Whether wrong matches, which were all to be taken as right, are why nothing fits: whether the rest fits far better without them.
+@param sigma of the fit with them @return a sentence; empty: it does not */
+std::string wrongMatches(const BundleStart& start, const Matches& matches, const GivenLengths& lengths, double sigma, double knownSigma);
 
 } // namespace tools
 

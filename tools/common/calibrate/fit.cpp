@@ -4,6 +4,7 @@
 #include "calibrate/fit.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "calibrate/refit.hpp"
+#include "calibrate/window_face.hpp"
 #include "window/parameters.hpp"
 #include <algorithm>
 #include <cmath>
@@ -85,8 +86,10 @@ void startAtKnown(RigModel& rig)
         std::vector<double> window = windowParameters(rig.cameras[c]->window());
         const std::vector<double> knownWindow = windowParameters(known.window);
         CV_Assert(knownWindow.size() == window.size());
+        const auto isKnown = [&](int i) { return known.covariance.at<double>(lens.rows + i, lens.rows + i) > 0; };
+        const bool isNormalKnown = !isRound(known.window) && (isKnown(0) || isKnown(1) || isKnown(2));
         for (int i = 0; i < (int)window.size(); i++)
-            if (known.covariance.at<double>(lens.rows + i, lens.rows + i) > 0)
+            if (isKnown(i) || (i < 3 && isNormalKnown))
                 window[i] = knownWindow[i];
         rig.cameras[c]->setWindow(withParameters(rig.cameras[c]->window(), window.data()));
     }

@@ -66,6 +66,8 @@ double logUpperTailChiSquared(int dof, double x)
 {
     if (!(x > 0.))
         return 0.;
+    if (std::isinf(x))
+        return -HUGE_VAL;
     // exp(-x/2) times the sum of (x/2)^a / Gamma(a + 1) for a = 0, 1, ... below dof/2; of odd dof a = 1/2, 3/2, ... and erfc.
     const double half = 0.5*x;
     const bool odd = dof % 2 != 0;

@@ -249,7 +249,7 @@ FitOutcome JointFit::solveAndScale()
     return outcome;
 }
 
-//! Decides until the same observations stay. Where one fit after the other comes to no end, neither does what is left.
+//! Decides until the same observations stay. Where one fit of a scene after the other comes to no end, neither does what is left.
 FitOutcome JointFit::rejectUntilStable()
 {
     const int ROUNDS = 30, MOST_ENDLESS = 3;
@@ -257,7 +257,7 @@ FitOutcome JointFit::rejectUntilStable()
     for (int round = 0, endless = 0; round < ROUNDS && outcome.isUsable(); round++)
     {
         endless = outcome.status == FitOutcome::MAX_ITERATIONS ? endless + 1 : 0;
-        if (endless == MOST_ENDLESS)
+        if (endless == MOST_ENDLESS && problem_.hasScene())
             break;
         Masks chosen = chooseInliers();
         if (chosen == inliers_)
@@ -273,30 +273,36 @@ FitOutcome JointFit::rejectUntilStable()
     return outcome;
 }
 
-//! How far apart the pixels of a camera are, whichever has them farthest; px of a coordinate.
+int JointFit::countWithin(double error) const
+{
+    int count = 0;
+    for (const std::vector<double>& ofImage : errors())
+        count += (int)std::count_if(ofImage.begin(), ofImage.end(), [&](double e) { return e < error; });
+    return count;
+}
+
+//! Standard deviation of where a camera's whole pixels are, whichever has them farthest apart; infinite: none has any.
 double JointFit::spread() const
 {
-    double largest = 0;
+    double largest = -1;
     for (int camera = 0; camera < problem_.cameraCount(); camera++)
     {
-        std::vector<double> x, y, distances;
+        std::vector<Point2d> pixels;
         for (const Image& image : images())
-            for (const Point2d& pixel : image.points.pixel)
-                if (image.camera == camera && isWhole(pixel))
-                {
-                    x.push_back(pixel.x);
-                    y.push_back(pixel.y);
-                }
-        const Point2d middle(median(x), median(y));
-        for (size_t i = 0; i < x.size(); i++)
-            distances.push_back(norm(Point2d(x[i], y[i]) - middle));
-        largest = std::max(largest, scaleOf(distances));
+            if (image.camera == camera)
+                std::copy_if(image.points.pixel.begin(), image.points.pixel.end(), std::back_inserter(pixels), isWhole);
+        if (pixels.empty())
+            continue;
+        Scalar mean, deviation;
+        meanStdDev(pixels, mean, deviation);
+        largest = std::max(largest, norm(deviation)/std::sqrt(2.));
     }
-    return largest;
+    return largest < 0 ? std::numeric_limits<double>::infinity() : largest;
 }
 
 FitOutcome JointFit::chooseFirstInliers()
 {
+    const double FITS = 1;              // px
     const double NOTHING = 0.2;         // of the spread, which one point for all would leave: what leaves so much explains next to nothing
     int inImages = 0;
     for (const Image& image : images())
@@ -308,7 +314,7 @@ FitOutcome JointFit::chooseFirstInliers()
         return outcome;
     estimateScale();
     if (problem_.hasScene() && scale_ > NOTHING*spread())
-        return checkMajority(0);        // it would creep for minutes, and come to nothing
+        return checkMajority(countWithin(FITS));        // it would creep for minutes, and come to nothing
     outliers_.leaveOutImages(scale_);
     inliers_ = smallErrors();
     outcome = outliers_.setInliers(inliers_);

@@ -31,6 +31,7 @@ private:
     void estimateScale();
     FitOutcome chooseFirstInliers();
     double spread() const;
+    int countWithin(double error) const;
     FitOutcome rejectOutliers();
     FitOutcome solveAndScale();
     FitOutcome rejectUntilStable();
