@@ -80,7 +80,8 @@ std::string wrongMatches(const BundleStart& start, const Matches& matches, const
 {
     const double EXPLAINS = 0.5;                            // of the noise
     BundleAdjustment adjustment;
-    if (!fits(start, matches, lengths, true, knownSigma, adjustment) || !(adjustment.fit.sigma < EXPLAINS*sigma))
+    if (!fits(start, matches, lengths, true, knownSigma, adjustment) || !(adjustment.fit.sigma < EXPLAINS*sigma)
+        || adjustment.usedPixels == adjustment.seenPixels)
         return "";
     std::vector<std::string> names;
     for (const int i : adjustment.outliers())
