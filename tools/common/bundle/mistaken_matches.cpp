@@ -78,7 +78,6 @@ std::string exchangedCameras(const BundleStart& start, const Matches& matches, c
 
 std::string wrongMatches(const BundleStart& start, const Matches& matches, const GivenLengths& lengths, double sigma, double knownSigma)
 {
-    const double EXPLAINS = 0.5;                            // of the noise
     BundleAdjustment adjustment;
     if (!fits(start, matches, lengths, true, knownSigma, adjustment) || !(adjustment.fit.sigma < EXPLAINS*sigma)
         || adjustment.usedPixels == adjustment.seenPixels)

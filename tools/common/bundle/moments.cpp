@@ -113,7 +113,6 @@ bool isNoisy(double sigma, double knownSigma)
 
 std::string lateCamera(const BundleStart& start, const Matches& matches, const GivenLengths& lengths, bool robust, double sigma)
 {
-    const double EXPLAINS = 0.5;                    // of the noise of the fit
     std::string sentence;
     double least = EXPLAINS*sigma;
     const auto attempt = [&](int camera, int late) {

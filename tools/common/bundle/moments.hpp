@@ -17,6 +17,8 @@ double missOf(const BundleStart& start, const RigPixels& pixels, int camera);
 some rows of the table. An adjustment to such matches creeps. Tables without images have no moments. */
 void requireSameMoments(const BundleStart& start, const Matches& matches);
 
+const double EXPLAINS = 0.5;        // of the noise of a fit: what leaves less of it is why it does not fit
+
 //! Whether a fit leaves more noise than matches of one moment do. @param knownSigma as of findingsOf
 bool isNoisy(double sigma, double knownSigma);
 
