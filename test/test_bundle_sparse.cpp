@@ -277,8 +277,13 @@ TEST_CASE("Without memory for the views' covariances points have those of known 
             const double own = little.call.pointDeviations.at<double>(i, k), other = known.call.pointDeviations.at<double>(i, k);
             if (!std::isfinite(own))
                 continue;
-            const bool hasLength = i % 10 < 2;      // whose weight against pixels is by their noise
-            CHECK(own == Approx(noise*other).epsilon(hasLength ? 0.01 : 1e-6));
+            // (A/noise^2 + B)^-1, A of the pixels and B of the lengths: where B counts it grows by less than noise^2, and the two fits
+            // weigh it differently, so that their points are a little apart.
+            const bool hasLength = i % 10 < 2;
+            const double least = hasLength ? std::min(noise, 1.) : noise, most = hasLength ? std::max(noise, 1.) : noise;
+            const double rounding = hasLength ? 1e-4 : 1e-6;
+            CHECK(own >= least*other*(1 - rounding));
+            CHECK(own <= most*other*(1 + rounding));
             CHECK(own < all.call.pointDeviations.at<double>(i, k));
         }
     CHECK(noise == Approx(1).epsilon(0.2));
