@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // How large errors usually are where some of them are wrong.
+#include "math/quantile.hpp"
 #include "math/robust_scale.hpp"
 #include "scenes.hpp"
 
@@ -32,6 +33,20 @@ TEST_CASE("The median is one of the values, whatever the others are", "[robust_s
     CHECK(median({ 4, 3, 2, 1 }) == 3);         // the upper one of two
     CHECK(median({ INF, 2, INF, 1, 3 }) == 3);
     CHECK(median({ -1e300, 0, 1e300 }) == 0);
+}
+
+TEST_CASE("A quantile has its share of the values below it, and leaves NaN out", "[robust_scale]")
+{
+    CHECK(std::isnan(quantile(std::vector<double>(), 0.5)));
+    CHECK(std::isnan(quantile(std::vector<double>(3, NaN), 0.5)));
+    CHECK(quantile(std::vector<float>{ 3, (float)NaN, 1, 2 }, 0.) == 1);
+    CHECK(quantile(std::vector<double>{ 3, NaN, 1, 2 }, 0.5) == 2);
+    CHECK(quantile(std::vector<double>{ 3, NaN, 1, INF }, 1.) == INF);
+    std::vector<uchar> all(100);
+    for (int i = 0; i < 100; i++)
+        all[i] = (uchar)(i*37 % 100);
+    for (const double share : { 0., 0.01, 0.25, 0.5, 0.75, 0.95, 0.99 })
+        CHECK(quantile(all, share) == std::floor(100*share + 1e-9));
 }
 
 TEST_CASE("The scale is that of the errors that are right", "[robust_scale]")

@@ -10,6 +10,7 @@
 #include "console/numbers.hpp"
 #include "console/progress.hpp"
 #include "formats/colmap_cameras.hpp"
+#include "math/quantile.hpp"
 
 #include <opencv2/imgproc.hpp>
 #include <algorithm>
@@ -283,9 +284,7 @@ void setErrors(std::vector<double> errors, PinholeImages& result)
     for (double error : errors)
         squares += error*error;
     result.rms = std::sqrt(squares/(double)errors.size());
-    const auto at = errors.begin() + (long)(0.95*(double)(errors.size() - 1));
-    std::nth_element(errors.begin(), at, errors.end());
-    result.most = *at;
+    result.most = quantile(std::move(errors), 0.95);
 }
 
 } // namespace

@@ -3,6 +3,7 @@
 
 #include "console/numbers.hpp"
 #include "console/failure.hpp"
+#include "math/quantile.hpp"
 #include <opencv2/core.hpp>
 #include <algorithm>
 #include <charconv>
@@ -34,11 +35,7 @@ std::string rounded(double value, int decimals, bool sign)
 
 double median(std::vector<double> values)
 {
-    if (values.empty())
-        return std::numeric_limits<double>::quiet_NaN();
-    const auto middle = values.begin() + (std::ptrdiff_t)values.size()/2;
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
+    return cv::refract::quantile(std::move(values), 0.5);
 }
 
 bool parseNumber(const std::string& text, double& number)

@@ -3,6 +3,7 @@
 
 #include "history/drift.hpp"
 #include "math/dense.hpp"
+#include "math/quantile.hpp"
 #include "measure/distributions.hpp"
 #include <algorithm>
 #include <cmath>
@@ -105,10 +106,7 @@ public:
         ewmas_.add(parameters, innovation.stdAlone.cwiseInverse().asDiagonal()*product(innovation.rootAlone, w));
         const Eigen::RowVectorXd t2 = w.colwise().squaredNorm();
         const std::vector<double> least = leastProbabilities(t2, parameters, innovation.rank());
-        std::vector<double> sorted = least;
-        const size_t at = (size_t)(falseAlarm*DRAWS);
-        std::nth_element(sorted.begin(), sorted.begin() + (long)at, sorted.end());
-        const double critical = sorted[at];
+        const double critical = cv::refract::quantile(least, falseAlarm);
         replaceAlarms(least, critical);
         return critical;
     }

@@ -3,6 +3,7 @@
 
 #include "laser/ridges.hpp"
 #include "console/numbers.hpp"
+#include "math/quantile.hpp"
 #include <opencv2/imgproc.hpp>
 #include <algorithm>
 #include <cmath>
@@ -191,9 +192,8 @@ double noiseOf(const Mat& signal)
             values.push_back(std::abs(filtered.at<float>(row, column)));
     if (values.empty())
         return 0.;
-    std::nth_element(values.begin(), values.begin() + values.size()/2, values.end());
     const double QUANTISED = 1/std::sqrt(12.);      // a grey value is rounded
-    return std::max(QUANTISED, values[values.size()/2]/(0.6745*6));
+    return std::max(QUANTISED, cv::refract::quantile(std::move(values), 0.5)/(0.6745*6));
 }
 
 /* The response of a Gaussian line of standard deviation s is s / (s^2 + scale^2)^(3/2), which times scale^(3/2) is largest at scale = s

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "measure/point_error.hpp"
+#include "math/quantile.hpp"
 #include <algorithm>
 #include <limits>
 
@@ -13,27 +14,6 @@ namespace tools {
 namespace {
 
 const double NOT_SEEN = std::numeric_limits<double>::quiet_NaN();
-
-std::vector<double> sortedAnswers(const std::vector<double>& values)
-{
-    std::vector<double> answers;
-    std::copy_if(values.begin(), values.end(), std::back_inserter(answers), [](double v) { return v == v; });
-    std::sort(answers.begin(), answers.end());
-    return answers;
-}
-
-//! The value below which a share of the answers lies.
-double quantile(const std::vector<double>& values, double share)
-{
-    const std::vector<double> answers = sortedAnswers(values);
-    return answers.empty() ? NOT_SEEN : answers[std::min(answers.size() - 1, (size_t)(share*answers.size()))];
-}
-
-double largest(const std::vector<double>& values)
-{
-    const std::vector<double> answers = sortedAnswers(values);
-    return answers.empty() ? NOT_SEEN : answers.back();
-}
 
 //! What the cameras see of the points where camera 1's rays through some pixels meet the plane z = range.
 struct PointsAtRange
@@ -56,21 +36,21 @@ std::vector<double> errorsOf(const Calibration& calibration, const PointsAtRange
 
 bool ErrorMap::seen() const { return worst() == worst(); }
 
-double ErrorMap::best() const
-{
-    const std::vector<double> answers = sortedAnswers(total);
-    return answers.empty() ? NOT_SEEN : answers.front();
-}
+double ErrorMap::best() const { return quantile(total, 0.); }
 
-double ErrorMap::worst() const { return largest(total); }
+double ErrorMap::worst() const { return quantile(total, 1.); }
 
-double ErrorMap::worstPixelNoise() const { return largest(pixelNoise); }
+double ErrorMap::worstPixelNoise() const { return quantile(pixelNoise, 1.); }
 
 double ErrorMap::percentile95() const { return quantile(total, 0.95); }
 
 double ErrorMap::median() const { return quantile(total, 0.5); }
 
-double ErrorMap::seenShare() const { return total.empty() ? 0. : (double)sortedAnswers(total).size()/total.size(); }
+double ErrorMap::seenShare() const
+{
+    const auto seen = std::count_if(total.begin(), total.end(), [](double error) { return error == error; });
+    return total.empty() ? 0. : (double)seen/(double)total.size();
+}
 
 void ErrorSquares::add(const ErrorMap& map)
 {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "stereo/dense_stereo.hpp"
+#include "math/quantile.hpp"
 #include "stereo/match_support.hpp"
 #include "stereo/rectified_rig.hpp"
 #include <opencv2/imgproc.hpp>
@@ -71,13 +72,6 @@ void levelSteps(Mat& disparity, const Mat& weight)
     Mat(sums(disparity.mul(weight), NEAR)/count).copyTo(disparity, known & (high - low < ONE_SURFACE) & (count > 0.9*NEAR.area()));
 }
 
-float quantile(std::vector<float>& values, double part)
-{
-    const auto at = values.begin() + (int)(part*(values.size() - 1));
-    std::nth_element(values.begin(), at, values.end());
-    return *at;
-}
-
 /* By how much the patches' own sigmas must grow to tell what neighbours on smooth surfaces differ by: noise of pixels is not
 independent, patches are not moved copies of each other. Third differences along rows and columns, of disparities so far apart
 that no pixel is in two patches, know of no surface up to second order; 95 % of them shall be within 1.96 sigma. */
@@ -100,7 +94,7 @@ double inflation(const Mat& disparity, const Mat& sigma)
                 if (std::abs(difference) < EDGE && variance > 0)
                     ratios.push_back(std::abs(difference)/std::sqrt(variance));
             }
-    return (int)ratios.size() < ENOUGH ? NONE : quantile(ratios, 0.95)/1.96;
+    return (int)ratios.size() < ENOUGH ? NONE : cv::refract::quantile(ratios, 0.95)/1.96;
 }
 
 //! How little two rectified images are alike round each pixel of the first, at its disparity; infinite where that is NaN.

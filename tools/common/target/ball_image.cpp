@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "target/ball_image.hpp"
+#include "math/quantile.hpp"
 
 #include <opencv2/imgproc.hpp>
 #include <algorithm>
@@ -321,8 +322,7 @@ Mat stillBackground(const std::vector<Mat>& images)
         {
             for (size_t i = 0; i < images.size(); i++)
                 values[i] = images[i].at<uchar>(y, x);
-            std::nth_element(values.begin(), values.begin() + (std::ptrdiff_t)values.size()/2, values.end());
-            background.at<uchar>(y, x) = values[values.size()/2];
+            background.at<uchar>(y, x) = (uchar)cv::refract::quantile(values, 0.5);
         }
     return background;
 }

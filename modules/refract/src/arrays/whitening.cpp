@@ -3,6 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "arrays/whitening.hpp"
+#include "math/quantile.hpp"
 
 namespace cv { namespace refract {
 
@@ -71,11 +72,7 @@ void MedianVariance::add(const std::vector<Point2d>& pixels, const PixelCovarian
 
 double MedianVariance::operator()() const
 {
-    if (variances_.empty())
-        return 1;
-    std::vector<double> sorted = variances_;
-    std::nth_element(sorted.begin(), sorted.begin() + sorted.size()/2, sorted.end());
-    return sorted[sorted.size()/2];
+    return variances_.empty() ? 1 : quantile(variances_, 0.5);
 }
 
 }} // namespace

@@ -3,15 +3,13 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "math/robust_scale.hpp"
+#include "math/quantile.hpp"
 
 namespace cv { namespace refract {
 
 double median(std::vector<double> values)
 {
-    if (values.empty())
-        return 0;
-    std::nth_element(values.begin(), values.begin() + values.size()/2, values.end());
-    return values[values.size()/2];
+    return values.empty() ? 0 : quantile(std::move(values), 0.5);
 }
 
 double scaleOf(const std::vector<double>& errors)

@@ -3,6 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "pose/length_profile.hpp"
+#include "math/quantile.hpp"
 
 namespace cv { namespace refract {
 
@@ -63,9 +64,8 @@ public:
                               centre[2] + draw[2]*std::sqrt(variances_[2]));
             excess.push_back(squaredDistanceToSphere(point, norm(T), m));
         }
-        std::nth_element(excess.begin(), excess.begin() + DRAWS*19/20, excess.end());
         const double NORMAL = 3.841459;         // of one parameter, with as many observations as one likes
-        return student_*std::max(1., excess[DRAWS*19/20]/NORMAL);
+        return student_*std::max(1., quantile(std::move(excess), 0.95)/NORMAL);
     }
 
 private:

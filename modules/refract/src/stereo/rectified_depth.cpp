@@ -3,6 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "stereo/disparity.hpp"
+#include "math/quantile.hpp"
 #include "stereo/rectified_projection.hpp"
 #include "opencv2/imgproc.hpp"
 
@@ -48,11 +49,8 @@ Mat cellMedians(const Mat& inverse)
                 for (int r = 0; r < cell.rows; r++)
                     std::copy_if(cell.ptr<float>(r), cell.ptr<float>(r) + cell.cols, std::back_inserter(values),
                                  [](float v) { return v > 0; });
-                const size_t middle = values.size()/2;
                 const bool enough = values.size()*4 >= cell.total();
-                if (enough)
-                    std::nth_element(values.begin(), values.begin() + middle, values.end());
-                cells.at<float>(y, x) = enough ? values[middle] : 0;
+                cells.at<float>(y, x) = enough ? (float)quantile(values, 0.5) : 0;
             }
     });
     return cells;
