@@ -38,3 +38,19 @@ TEST_CASE("Half a turn and none have vectors", "[rotation]")
         CHECK(std::min(norm(rvec - expected), norm(rvec + expected)) < 1e-15);
     }
 }
+
+TEST_CASE("The right Jacobian says how a rotation turns with its vector", "[rotation]")
+{
+    const uint64 seed = 20261130;
+    CAPTURE(seed);
+    RNG rng(seed);
+    for (double angle : { 0., 1e-9, 1e-6, 3e-5, 0.1, 1., 3., CV_PI - 1e-7, CV_PI, 4. })
+        for (int k = 0; k < 20; k++)
+        {
+            const Vec3d rvec = angle*normalize(Vec3d(rng.gaussian(1), rng.gaussian(1), rng.gaussian(1)));
+            const Vec3d step = 1e-4*Vec3d(rng.gaussian(1), rng.gaussian(1), rng.gaussian(1));
+            const Vec3d turn = rotationVector(rotationMatrix(rvec - 0.5*step).t()*rotationMatrix(rvec + 0.5*step));
+            INFO("rvec " << rvec << ", step " << step);
+            CHECK(norm(Rotation(rvec.val).rightJacobian()*step - turn) < 1e-7*norm(step));
+        }
+}

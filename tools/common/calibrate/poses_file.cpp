@@ -7,8 +7,8 @@
 #include "console/failure.hpp"
 #include "console/numbers.hpp"
 #include "console/csv.hpp"
+#include "math/rotation.hpp"
 #include "pose/poses.hpp"
-#include <opencv2/calib3d.hpp>
 #include <cmath>
 #include <map>
 
@@ -114,10 +114,9 @@ private:
             return Mat();
         if (turn == 0 || shift == 0)
             throw Failure(table_.where(row) + ": sigma_deg and " + sigma_.column + " must both be more than 0, or both 0 (exact)");
-        Mat r, t, dr1, dt, dr2;
-        composeRT(rvec, Vec3d(), Vec3d(), Vec3d(), r, t, dr1, dt, dr2);       // first the pose, then the small rotation
+        const Matx33d J = refract::Rotation(rvec.val).rightJacobian();
         Mat covariance = Mat::eye(6, 6, CV_64F)*(shift*shift);
-        Mat(turn*turn*dr2*dr2.t()).copyTo(covariance(Rect(0, 0, 3, 3)));
+        Mat(turn*turn*(J.t()*J).inv()).copyTo(covariance(Rect(0, 0, 3, 3)));
         return covariance;
     }
 

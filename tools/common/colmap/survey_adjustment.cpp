@@ -5,6 +5,7 @@
 #include "colmap/scale_of_window.hpp"
 #include "console/failure.hpp"
 #include "console/progress.hpp"
+#include "math/rotation.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -249,18 +250,17 @@ void setPlaces(const SurveyStart& start, SurveyAdjustment& result)
 Matx33d SurveyAdjustment::centreCovariance(int view) const
 {
     // centre = -R^T t
-    Mat jacobian;
-    Matx33d R;
-    Rodrigues(rvecs[view], R, jacobian);
+    const Rotation rotation(rvecs[view].val);
     Matx<double, 3, 6> J;
-    for (int r = 0; r < 3; r++)
-        for (int k = 0; k < 3; k++)
+    for (int k = 0; k < 3; k++)
+    {
+        const Vec3d byTurn = -(rotation.dR[k].t()*tvecs[view]);
+        for (int r = 0; r < 3; r++)
         {
-            J(r, k) = 0.;
-            for (int c = 0; c < 3; c++)
-                J(r, k) -= jacobian.at<double>(k, 3*c + r)*tvecs[view][c];
-            J(r, 3 + k) = -R(k, r);
+            J(r, k) = byTurn[r];
+            J(r, 3 + k) = -rotation.R(k, r);
         }
+    }
     return J*Matx66d(viewCovariances[view].ptr<double>())*J.t();
 }
 

@@ -8,6 +8,7 @@
 #include "console/numbers.hpp"
 #include "console/table.hpp"
 #include <algorithm>
+#include "math/rotation.hpp"
 #include <cmath>
 #include <memory>
 #include <ostream>
@@ -52,18 +53,9 @@ RigidTransform placed(const SurveyResult& result, int view)
 //! Of its translation: T of the fit less R of the origin, which turns with the pose.
 Matx33d placedCovariance(const SurveyResult& result, int view)
 {
-    Mat jacobian;
-    Matx33d R;
-    Rodrigues(result.adjustment.rvecs[view], R, jacobian);
+    const refract::Rotation rotation(result.adjustment.rvecs[view].val);
     Matx<double, 3, 6> J;
-    for (int r = 0; r < 3; r++)
-        for (int k = 0; k < 3; k++)
-        {
-            J(r, k) = 0.;
-            for (int c = 0; c < 3; c++)
-                J(r, k) -= jacobian.at<double>(k, 3*r + c)*result.start.origin[c];
-            J(r, 3 + k) = r == k;
-        }
+    hconcat(rotation.derivativeOf(-result.start.origin), Matx33d::eye(), J);
     return J*Matx66d(result.adjustment.viewCovariances[view].ptr<double>())*J.t();
 }
 

@@ -7,6 +7,7 @@
 #include "console/failure.hpp"
 #include "console/numbers.hpp"
 #include "console/progress.hpp"
+#include "math/rotation.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -278,17 +279,14 @@ std::vector<Mat> covariancesOfPoses(const SurveyStart& start, const std::vector<
         // (rvec, centre) -> (rvec, tvec = -R centre)
         const Vec3d& C = known->second.center;
         const double turn = vagueTurn(norm(C), known->second.std);
-        Matx33d R;
-        Mat jacobian;
-        Rodrigues(rvecs[view], R, jacobian);
+        const Rotation rotation(rvecs[view].val);
+        const Matx33d byTurn = rotation.derivativeOf(-C);
         Matx66d J = Matx66d::eye(), S = Matx66d::zeros();
         for (int r = 0; r < 3; r++)
             for (int k = 0; k < 3; k++)
             {
-                J(3 + r, k) = 0.;
-                for (int c = 0; c < 3; c++)
-                    J(3 + r, k) -= jacobian.at<double>(k, 3*r + c)*C[c];
-                J(3 + r, 3 + k) = -R(r, k);
+                J(3 + r, k) = byTurn(r, k);
+                J(3 + r, 3 + k) = -rotation.R(r, k);
             }
         for (int k = 0; k < 3; k++)
         {
@@ -296,7 +294,7 @@ std::vector<Mat> covariancesOfPoses(const SurveyStart& start, const std::vector<
             S(3 + k, 3 + k) = known->second.std*known->second.std;
         }
         all.push_back(Mat(J*S*J.t(), true));
-        tvecs[view] = -(R*C);
+        tvecs[view] = -(rotation.R*C);
     }
     return all;
 }

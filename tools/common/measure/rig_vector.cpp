@@ -4,9 +4,9 @@
 #include "measure/rig_vector.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "calibrate/window_face.hpp"
+#include "math/rotation.hpp"
 #include "measure/eigen_matrix.hpp"
 #include "window/parameters.hpp"
-#include <opencv2/calib3d.hpp>
 #include <algorithm>
 
 using namespace cv;
@@ -82,13 +82,14 @@ private:
     //! @param byTransform of the new pose @return its derivatives by the one before
     MatrixXd follow(const RigidTransform& transform, MatrixXd& byTransform)
     {
-        Mat r, t, rr1, rt1, rr2, rt2, tr1, tt1, tr2, tt2;
-        composeRT(rvec, tvec, rotationVector(transform.R), transform.t, r, t, rr1, rt1, rr2, rt2, tr1, tt1, tr2, tt2);
-        rvec = Vec3d(r.ptr<double>());
-        tvec = Vec3d(t.ptr<double>());
+        const Rotation before(rvec.val), then(rotationVector(transform.R).val);
+        rvec = rotationVector(then.R*before.R);
+        const Matx33d byTurn = Rotation(rvec.val).rightJacobian().inv();
+        const MatrixXd zero = MatrixXd::Zero(3, 3), one = MatrixXd::Identity(3, 3);
         MatrixXd byBefore(6, 6);
-        byBefore << toEigen(rr1), toEigen(rt1), toEigen(tr1), toEigen(tt1);
-        byTransform << toEigen(rr2), toEigen(rt2), toEigen(tr2), toEigen(tt2);
+        byBefore << toEigen(Mat(byTurn*before.rightJacobian())), zero, zero, toEigen(Mat(then.R));
+        byTransform << toEigen(Mat(byTurn*before.R.t()*then.rightJacobian())), zero, toEigen(Mat(then.derivativeOf(tvec))), one;
+        tvec = transform.apply(tvec);
         byPose = product(byBefore, byPose);
         return byBefore;
     }

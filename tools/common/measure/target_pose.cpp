@@ -5,8 +5,8 @@
 #include "calibrate/rig_data.hpp"
 #include "console/failure.hpp"
 #include "math/dense.hpp"
+#include "math/rotation.hpp"
 #include "measure/rig_vector.hpp"
-#include <opencv2/calib3d.hpp>
 #include <algorithm>
 #include <cmath>
 
@@ -16,21 +16,13 @@ namespace tools {
 
 Matx33d TargetPose::rotation() const
 {
-    Matx33d R;
-    Rodrigues(rvec, R);
-    return R;
+    return refract::rotationMatrix(rvec);
 }
 
 MatrixXd TargetPose::differentiatePoint(const Point3d& objectPoint) const
 {
-    Matx33d R;
-    Mat jacobian;                               // 3x9: by rvec, of R row by row
-    Rodrigues(rvec, R, jacobian);
-    const MatrixXd dR = toEigen(jacobian);
     MatrixXd byPose(3, 6);
-    byPose.rightCols(3).setIdentity();
-    for (int row = 0; row < 3; row++)
-        byPose.block(row, 0, 1, 3) = (dR.middleCols(3*row, 3)*Eigen::Vector3d(objectPoint.x, objectPoint.y, objectPoint.z)).transpose();
+    byPose << toEigen(Mat(refract::Rotation(rvec.val).derivativeOf(objectPoint))), MatrixXd::Identity(3, 3);
     return byPose;
 }
 

@@ -3,7 +3,7 @@
 
 #include "simulate/surface.hpp"
 #include "calibrate/window_face.hpp"
-#include <opencv2/calib3d.hpp>
+#include "math/rotation.hpp"
 #include <algorithm>
 #include <cmath>
 
@@ -75,7 +75,7 @@ double shown(double spacing, double size)
 SolidTexture::SolidTexture(const TextureOptions& options, uint64_t seed)
     : contrast_(options.contrast), scale_(GAIN/(GRAIN_STD*std::sqrt((double)options.octaves)))
 {
-    cv::Rodrigues(Vec3d(0.5, 0.7, 0.3), turn_);
+    turn_ = cv::refract::rotationMatrix(Vec3d(0.5, 0.7, 0.3));
     double size = options.size;
     for (int i = 0; i < options.octaves; i++, size /= 2)
         octaves_.push_back({size, mixed(seed*64 + i + 1)});

@@ -3,6 +3,7 @@
 
 #include "target/board_quality.hpp"
 #include "console/numbers.hpp"
+#include "math/rotation.hpp"
 #include "target/april_grid.hpp"
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
@@ -183,8 +184,7 @@ void NextView::add(const std::vector<cv::Point2d>& points)
     cv::Vec3d rvec, tvec;
     if (!cv::solvePnP(object, pixels, K, cv::noArray(), rvec, tvec, false, cv::SOLVEPNP_IPPE))
         return;
-    cv::Matx33d R;
-    cv::Rodrigues(rvec, R);
+    const cv::Matx33d R = cv::refract::rotationMatrix(rvec);
     const double sign = R(2, 2) > 0 ? -1 : 1, least = std::sin(TILT_DEG*CV_PI/180);     // the normal towards the camera
     const double x = sign*R(0, 2), y = sign*R(1, 2);
     for (const auto& side : {std::pair(0, x), std::pair(1, -x), std::pair(2, y), std::pair(3, -y)})

@@ -56,12 +56,6 @@ std::vector<Vec3d> middlesOfViews(const Problem& problem)
     return middles;
 }
 
-//! v of the matrix of v x.
-Vec3d fromCross(const Matx33d& m)
-{
-    return 0.5*Vec3d(m(2, 1) - m(1, 2), m(0, 2) - m(2, 0), m(1, 0) - m(0, 1));
-}
-
 //! Of those of one rotation, the one that is nearest.
 Vec3d nearestRotationVector(const Matx33d& R, const Vec3d& near)
 {
@@ -178,12 +172,9 @@ ViewMotion::ViewMotion(const Problem& problem, const ViewGraph& graph) : graph_(
     {
         const double* const pose = problem.blocks()[problem.poseBlock(view)].values.data();
         const Rotation rotation(pose);
-        Matx33d turnByRvec;
-        for (int k = 0; k < 3; k++)
-            for (int i = 0; i < 3; i++)
-                turnByRvec(i, k) = fromCross(rotation.R.t()*rotation.dR[k])[i];
         const Vec3d middle = sceneScale_*middles[view];
-        views_.push_back(View{ rotation, Vec3d(pose), Vec3d(pose + 3), turnByRvec, middle, Vec3d(), Vec3d(), Matx33d::eye(), middle });
+        views_.push_back(View{ rotation, Vec3d(pose), Vec3d(pose + 3), rotation.rightJacobian(), middle, Vec3d(), Vec3d(),
+                               Matx33d::eye(), middle });
     }
 }
 

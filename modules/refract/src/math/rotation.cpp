@@ -58,6 +58,19 @@ Matx33d Rotation::derivativeOf(const Vec3d& v) const
     return d;
 }
 
+Matx33d Rotation::rightJacobian() const
+{
+    Matx33d J;
+    for (int i = 0; i < 3; i++)
+    {
+        const Matx33d cross = R.t()*dR[i];          // v -> J_i x v
+        J(0, i) = 0.5*(cross(2, 1) - cross(1, 2));
+        J(1, i) = 0.5*(cross(0, 2) - cross(2, 0));
+        J(2, i) = 0.5*(cross(1, 0) - cross(0, 1));
+    }
+    return J;
+}
+
 Matx32d tangents(const Vec3d& u)
 {
     const Vec3d a = normalize(u.cross(std::abs(u[0]) < 0.6 ? Vec3d(1, 0, 0) : Vec3d(0, 1, 0))), b = u.cross(a);

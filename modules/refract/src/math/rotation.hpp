@@ -33,6 +33,9 @@ struct Rotation
     Matx33d dR[3];
     //! d(R v)/drvec
     Matx33d derivativeOf(const Vec3d& v) const;
+    /** The right Jacobian of SO(3): the matrix of rvec + d is that of rvec times that of the small rotation J d (J. Sola et al.,
+    A micro Lie theory for state estimation in robotics, 2018, eq. 67). */
+    Matx33d rightJacobian() const;
 };
 
 }} // namespace
