@@ -254,6 +254,16 @@ MeasuredBundle measuredBundle(const Options& o, const Matches& matches, const Gi
     return measured;
 }
 
+std::string wrongOf(const Options& o, const Matches& matches, const GivenLengths& lengths, const BundleStart& start, double sigma,
+                    double knownSigma)
+{
+    Options robustly = o;
+    robustly.robust = true;
+    const MeasuredBundle measured = measuredBundle(robustly, matches, lengths, start);
+    const auto adjustRobustly = [&](const BundleStart& from) { return adjustBundle(from, matches, lengths, true, ENOUGH_ITERATIONS); };
+    return wrongMatches(start, lengths, adjustRobustly, &measured, sigma, knownSigma, [&](int point) { return matches.names[point].text(); });
+}
+
 //! What is to be thought of it, and why it is not as the start says: what the images are comes before what that leads to.
 BundleFindings examine(const Options& o, const Calibration& file, const Matches& matches, const GivenLengths& lengths,
                        const BundleStart& start, const BundleAdjustment& adjustment)
@@ -264,8 +274,9 @@ BundleFindings examine(const Options& o, const Calibration& file, const Matches&
     BundleFindings findings = findingsOf(start, lengths, adjustment, adjust, knownSigma, o.maxRms, &measured);
     const bool areNoisy = isNoisy(findings.pixelStd, knownSigma);
     const double sigma = adjustment.fit.sigma;
-    std::string mistake = areNoisy && !o.robust && !findings.areMeasuresWrong ? wrongMatches(start, matches, lengths, sigma, knownSigma)
-                                                                              : "";
+    std::string mistake;
+    if (areNoisy && !o.robust)
+        mistake = wrongOf(o, matches, lengths, start, sigma, knownSigma);
     if (mistake.empty() && areNoisy)
         mistake = lateCamera(start, matches, lengths, o.robust, sigma);
     // Pixels that fit without the measures are those of the cameras they are given for.
@@ -301,7 +312,7 @@ int bundleMatches(const Options& options, const Calibration& file, const Command
     catch (const Failure&)
     {
         const double knownSigma = knownNoise(options, file, matches), endless = std::numeric_limits<double>::infinity();
-        std::string mistake = options.robust ? "" : wrongMatches(start, matches, lengths, endless, knownSigma);
+        std::string mistake = options.robust ? "" : wrongOf(options, matches, lengths, start, endless, knownSigma);
         if (mistake.empty())
             mistake = exchangedCameras(start, matches, lengths, options.robust, knownSigma);
         if (mistake.empty())

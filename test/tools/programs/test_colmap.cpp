@@ -187,6 +187,23 @@ TEST_CASE("Wrong observations of a model are left out, and few others", "[tools]
     CHECK(ofPoints.value() < 2);
 }
 
+TEST_CASE("Wrong observations that are to be taken as right are told", "[tools][bundle][colmap]")
+{
+    for (const bool areMany : {false, true})
+    {
+        Network network(731, 1, areMany ? 0.05 : 0.);
+        if (!areMany)
+            network.images[5].pixels[20].first.y += 60;
+        const TemporaryFolder f;
+        network.write(f);
+        const ToolResult result = survey(f, "--no-robust --positions=" + f / "positions.csv");
+        CAPTURE(scenes::seed(), areMany, result.out, result.err);
+        CHECK(result.code == 2);
+        CHECK(mentions(result.err, " pixels are wrong"));
+        CHECK(mentions(result.err, "correct them, or leave out --no-robust"));
+    }
+}
+
 TEST_CASE("A refined model gives images of a pinhole without window", "[tools][undistort][colmap]")
 {
     Network network(740);

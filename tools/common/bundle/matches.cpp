@@ -200,12 +200,11 @@ std::vector<std::pair<int, int>> pairsOf(const CsvTable& table, const CsvTable::
 
 Matches thinned(const Matches& matches, const GivenLengths& lengths)
 {
-    const size_t ENOUGH_POINTS = 200;
-    const size_t count = matches.names.size(), step = std::max<size_t>(1, count/ENOUGH_POINTS);
+    const size_t ENOUGH = 200, count = matches.names.size();       // of points and of lengths
     std::vector<uchar> kept(count, 0);
-    for (size_t i = 0; i < count; i += step)
+    for (size_t i = 0; i < count; i += std::max<size_t>(1, count/ENOUGH))
         kept[i] = 1;
-    for (size_t i = 0; i < lengths.list.size(); i += step)
+    for (size_t i = 0; i < lengths.list.size(); i += std::max<size_t>(1, lengths.list.size()/ENOUGH))
         kept[lengths.list[i].a] = kept[lengths.list[i].b] = 1;
     Matches some = matches;
     for (std::vector<cv::Point2d>& pixels : some.pixels)

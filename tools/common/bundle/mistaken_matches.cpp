@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "bundle/mistaken_matches.hpp"
-#include "bundle/bundle_findings.hpp"
 #include "bundle/moments.hpp"
 #include "console/failure.hpp"
 #include "console/numbers.hpp"
@@ -46,16 +45,15 @@ std::vector<Exchange> exchangesOf(const BundleStart& start, const Matches& match
     return all;
 }
 
-/** Whether matches fit near the start, and contradict nothing that is known of it.
+/** Whether there is a fit near the start, which contradicts nothing that is known of it.
 @param adjustment written; where there is no fit it is no more than begun */
-bool fits(const BundleStart& start, const Matches& matches, const GivenLengths& lengths, bool robust, double knownSigma,
-          BundleAdjustment& adjustment)
+bool fits(const BundleStart& start, const GivenLengths& lengths, const Readjust& adjust, double knownSigma, BundleAdjustment& adjustment,
+          const MeasuredBundle* measured = nullptr)
 {
-    const auto adjust = [&](const BundleStart& from) { return adjustBundle(from, matches, lengths, robust, ENOUGH_ITERATIONS); };
     try
     {
         adjustment = adjust(start);
-        return findingsOf(start, lengths, adjustment, adjust, knownSigma, 0.).contradictions.empty();
+        return findingsOf(start, lengths, adjustment, adjust, knownSigma, 0., measured).contradictions.empty();
     }
     catch (const Failure&)              // no fit, no explanation
     {
@@ -69,22 +67,28 @@ std::string exchangedCameras(const BundleStart& start, const Matches& matches, c
 {
     BundleAdjustment adjustment;
     for (const Exchange& exchange : exchangesOf(start, thinned(matches, lengths)))
-        if (fits(start, exchange.matches, lengths, robust, knownSigma, adjustment))
+    {
+        const auto adjust = [&](const BundleStart& from) {
+            return adjustBundle(from, exchange.matches, lengths, robust, ENOUGH_ITERATIONS); };
+        if (fits(start, lengths, adjust, knownSigma, adjustment))
             return format("the observations of cameras %d and %d are exchanged: taken as each other's, they fit near the start with "
                           "%.3g px of noise; exchange their columns in the table (of --wand their images), or the two cameras of the "
                           "start", exchange.a + 1, exchange.b + 1, adjustment.fit.sigma);
+    }
     return "";
 }
 
-std::string wrongMatches(const BundleStart& start, const Matches& matches, const GivenLengths& lengths, double sigma, double knownSigma)
+std::string wrongMatches(const BundleStart& start, const GivenLengths& lengths, const Readjust& adjustRobustly,
+                         const MeasuredBundle* measured, double sigma, double knownSigma,
+                         const std::function<std::string(int point)>& nameOf)
 {
     BundleAdjustment adjustment;
-    if (!fits(start, matches, lengths, true, knownSigma, adjustment) || !(adjustment.fit.sigma < EXPLAINS*sigma)
+    if (!fits(start, lengths, adjustRobustly, knownSigma, adjustment, measured) || !(adjustment.fit.sigma < EXPLAINS*sigma)
         || adjustment.usedPixels == adjustment.seenPixels)
         return "";
     std::vector<std::string> names;
     for (const int i : adjustment.outliers())
-        names.push_back(matches.names[i].text());
+        names.push_back(nameOf(i));
     return format("%d of %d pixels are wrong%s: all others fit to %.3g px; correct them, or leave out --no-robust",
                   adjustment.seenPixels - adjustment.usedPixels, adjustment.seenPixels,
                   names.empty() ? "" : (" (" + listed(names) + ")").c_str(), adjustment.fit.sigma);

@@ -4,7 +4,7 @@
 #ifndef REFRACT_TOOLS_MISTAKEN_MATCHES_HPP
 #define REFRACT_TOOLS_MISTAKEN_MATCHES_HPP
 
-#include "bundle/bundle_start.hpp"
+#include "bundle/bundle_findings.hpp"
 
 namespace tools {
 
@@ -14,8 +14,12 @@ the start, or contradict something that is right, or have no fit: so this asks w
 std::string exchangedCameras(const BundleStart& start, const Matches& matches, const GivenLengths& lengths, bool robust, double knownSigma);
 
 /** Whether wrong matches, which were all to be taken as right, are why nothing fits: whether the rest fits far better without them.
-@param sigma of the fit with them @return a sentence; empty: it does not */
-std::string wrongMatches(const BundleStart& start, const Matches& matches, const GivenLengths& lengths, double sigma, double knownSigma);
+@param adjustRobustly, measured without the wrong ones; measured may be null, as of findingsOf
+@param sigma of the fit with them
+@param nameOf a point @return a sentence; empty: it does not */
+std::string wrongMatches(const BundleStart& start, const GivenLengths& lengths, const Readjust& adjustRobustly,
+                         const MeasuredBundle* measured, double sigma, double knownSigma,
+                         const std::function<std::string(int point)>& nameOf);
 
 } // namespace tools
 

@@ -3,12 +3,13 @@
 
 #include "colmap/survey_output.hpp"
 #include "bundle/bundle_output.hpp"
+#include "bundle/mistaken_matches.hpp"
 #include "console/csv.hpp"
 #include "console/json.hpp"
 #include "console/numbers.hpp"
 #include "console/table.hpp"
-#include <algorithm>
 #include "math/rotation.hpp"
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <ostream>
@@ -291,6 +292,8 @@ void printSurvey(std::ostream& out, const SurveyResult& result)
         out << fittedLine("hardly determined: ", result.findings.weak) << "\n";
 }
 
+static const double NO_MEMORY = 1e-9;           // GB: no +- of views are needed
+
 //! What has no answer starts where it did.
 static void startAt(const SurveyAdjustment& found, SurveyStart& start)
 {
@@ -318,7 +321,6 @@ static MeasuredBundle measuredBundle(const SurveyOptions& options, const BundleS
         measured.points[0].push_back(observation[2]);
     const auto from = std::make_shared<SurveyStart>(result.start);
     measured.adjust = [&, quiet, from](const Measures& measures, const std::vector<std::vector<uchar>>* only) {
-        const double NO_MEMORY = 1e-9;          // no +- of views are needed
         from->lengths = measures.lengths;
         from->positions = measures.positions;
         result.survey.pixels = pixels;
@@ -331,6 +333,22 @@ static MeasuredBundle measuredBundle(const SurveyOptions& options, const BundleS
         return found.bundle;
     };
     return measured;
+}
+
+static std::string wrongOf(const SurveyOptions& options, const BundleStart& start, bool quiet, SurveyResult& result)
+{
+    SurveyOptions robustly = options;
+    robustly.robust = true;
+    const std::vector<Point2d> pixels = result.survey.pixels;
+    const MeasuredBundle measured = measuredBundle(robustly, start, pixels, quiet, result);
+    const auto adjustRobustly = [&](const BundleStart& from) {
+        return adjustSurvey(result.survey, from, result.start, true, NO_MEMORY, quiet).bundle; };
+    const std::string mistake =
+        wrongMatches(start, result.start.lengths, adjustRobustly, result.start.isScaleOfWindow ? nullptr : &measured,
+                     result.adjustment.bundle.fit.sigma, options.pixelSigma,
+                     [&](int point) { return "point " + std::to_string(result.survey.model.points[point].id); });
+    result.survey.pixels = pixels;
+    return mistake;
 }
 
 SurveyResult adjustColmap(const SurveyOptions& options, const BundleStart& start, const std::string& unit, bool quiet)
@@ -351,7 +369,11 @@ SurveyResult adjustColmap(const SurveyOptions& options, const BundleStart& start
     result.findings = findingsOf(start, result.start.lengths, result.adjustment.bundle, bundle, options.pixelSigma, options.maxRms,
                                  result.start.isScaleOfWindow ? nullptr : &measured);
     result.survey.pixels = pixels;
-    checkPlaces(start, bundle, result.findings);
+    const std::string mistake = options.robust ? "" : wrongOf(options, start, quiet, result);
+    if (mistake.empty())
+        checkPlaces(start, bundle, result.findings);
+    else
+        result.findings.contradictions = {mistake};
     result.findings.scale = scaleText(result.start, result.adjustment);
     if (result.start.isScaleOfWindow && !(result.adjustment.scaleStd <= VAGUE))
         result.findings.weak.insert(result.findings.weak.begin(), "the scale, which the window alone tells: give --lengths or --positions");
