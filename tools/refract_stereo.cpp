@@ -12,6 +12,7 @@
 #include "console/progress.hpp"
 #include "console/table.hpp"
 #include "console/view_names.hpp"
+#include "math/quantile.hpp"
 #include "stereo/checked_stereo.hpp"
 #include "stereo/cloud_file.hpp"
 #include "stereo/depth_picture.hpp"
@@ -169,7 +170,7 @@ cv::Vec2d foundRange(const Calibration& rig, PairReader& reader, const std::vect
         progress.step();
     }
     std::sort(depths.begin(), depths.end());
-    const cv::Vec2d range = depthRangeOf(depths);
+    const cv::Vec2d range = depthRangeOf(depths, rig);
     if (!command.quiet())
         std::cout << format("range of depths: --depth=%.4g,%.4g, from %d details seen in both images\n\n", range[0], range[1],
                             (int)depths.size());
@@ -213,8 +214,8 @@ public:
         const std::vector<float> sorted = sortedDepths(depth);
         const double rare = 0.01;
         result.matched = (double)sorted.size()/(double)depth.total();
-        result.near = percentile(sorted, rare);
-        result.far = percentile(sorted, 1 - rare);
+        result.near = cv::refract::quantile(sorted, rare);
+        result.far = cv::refract::quantile(sorted, 1 - rare);
         result.typicalSigma = typicalSigmaZ(cloud);
         result.rowsFound = checked.rows.found;
         result.rowsExpected = checked.rows.expected;
@@ -248,7 +249,7 @@ private:
 bool areRowsWithin(const Options& options, const std::vector<PairResult>& results, const Command& command)
 {
     const PairResult worst = *std::max_element(results.begin(), results.end(), [](const PairResult& a, const PairResult& b) {
-        return std::isnan(a.rowsFound) ? !std::isnan(b.rowsFound) : a.rowsFound < b.rowsFound; });
+        return std::isnan(b.rowsFound) ? !std::isnan(a.rowsFound) : a.rowsFound < b.rowsFound; });
     if (options.maxRowError > 0 && std::isnan(worst.rowsFound))
         command.warn("the row error could not be measured, so --max-row-error is not met");
     return !(options.maxRowError > 0) || worst.rowsFound <= options.maxRowError;

@@ -1,6 +1,7 @@
 // This file is part of the refract project. It is subject to the license terms in the LICENSE file at its top level.
 // SPDX-License-Identifier: Apache-2.0
 
+#include "math/quantile.hpp"
 #include "stereo/depth_picture.hpp"
 #include "temporary_folder.hpp"
 #include <catch2/catch.hpp>
@@ -92,7 +93,7 @@ TEST_CASE("The scale bar has the image's colours", "[tools][stereo][picture]")
         bottom--;
     CHECK(bottom - top > 300);
     const std::vector<float> sorted = sortedDepths(depth);
-    const double near = percentile(sorted, 0.01), far = percentile(sorted, 0.99);
+    const double near = cv::refract::quantile(sorted, 0.01), far = cv::refract::quantile(sorted, 0.99);
     for (const double part : {0.1, 0.5, 0.9})       // of the way from far, at the top, to near
     {
         const double z = far + part*(near - far);

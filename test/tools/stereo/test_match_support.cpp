@@ -23,16 +23,15 @@ TEST_CASE("Matches of flat areas and of noise rest on nothing", "[tools][stereo]
     // What is at x in the first is at x - 8 in the second.
     const Mat first = texture(cv::Rect(0, 0, size.width, size.height)).clone();
     const Mat second = texture(cv::Rect(8, 0, size.width, size.height)).clone();
-    const MatchSupport right = supportOf(first, second, disparity, false);
+    const MatchSupport right = supportOf(first, second, disparity);
     CHECK(right.supported > 0.95*matched);
     CHECK(right.textured <= matched);
     CHECK(right.share() > 0.95);
     CHECK(cv::countNonZero(right.mask) == right.supported);
     CHECK(cv::countNonZero(right.nearby) == matched);           // never one that is no match
-    CHECK(supportOf(first, second, disparity, true).supported < 0.01*matched);
-    CHECK(supportOf(first, other, disparity, false).supported < 0.01*matched);
-    const Mat flat(size, CV_8UC3, cv::Scalar::all(90));
-    const MatchSupport nothing = supportOf(flat, flat, disparity, false);
+    CHECK(supportOf(first, other, disparity).supported < 0.01*matched);
+    const Mat flat(size, CV_8U, cv::Scalar(90));
+    const MatchSupport nothing = supportOf(flat, flat, disparity);
     CHECK(nothing.textured == 0);
     CHECK(std::isnan(nothing.share()));
     CHECK(cv::countNonZero(nothing.nearby) == 0);
@@ -53,7 +52,7 @@ TEST_CASE("Noise as strong as the texture is no support, weaker noise takes none
             random.fill(added, cv::RNG::NORMAL, 0, noise);
             Mat(scene + added).convertTo(image, CV_8U);
         }
-        const MatchSupport support = supportOf(images[0], images[1], disparity, false);
+        const MatchSupport support = supportOf(images[0], images[1], disparity);
         INFO("noise " << noise << ": " << support.supported << " of " << support.textured);
         CHECK((noise < 15 ? support.supported > 0.95*(double)size.area() : support.supported < 0.01*size.area()));
     }

@@ -5,6 +5,7 @@
 #include "console/progress.hpp"
 #include "match/features.hpp"
 #include "match/pair_mistakes.hpp"
+#include "math/quantile.hpp"
 #include "stereo/depth_picture.hpp"
 #include <cmath>
 #include <limits>
@@ -169,7 +170,7 @@ Mat matchedDisparity(const DenseStereo& stereo)
 std::string seenRange(const WideDepths& seen)
 {
     const double RARE = 0.02;
-    return format("%.4g to %.4g", percentile(seen.sorted, RARE), percentile(seen.sorted, 1 - RARE));
+    return format("%.4g to %.4g", cv::refract::quantile(seen.sorted, RARE), cv::refract::quantile(seen.sorted, 1 - RARE));
 }
 
 //! Beyond, no match can be used: where the calibration says that it is that bad, what it says.
@@ -195,11 +196,12 @@ CheckedStereo StereoChecker::match(const Mat& image1, const Mat& image2) const
     stereo = matchPair(rig_, image1, image2, options_);
     removeOutside(rig_.depthRange(), stereo.points);
     wide_.removeContradicted(seen, isElsewhere, stereo.points);
-    const MatchSupport support = supportOf(stereo.rectified1, stereo.rectified2, matchedDisparity(stereo), rig_.vertical());
-    stereo.points.setTo(NO_POINT, ~(isElsewhere ? support.mask : support.nearby));
+    const MatchSupport support = supportOf(forMatcher(rig_, stereo.rectified1), forMatcher(rig_, stereo.rectified2),
+                                           fromMatcher(rig_, matchedDisparity(stereo)));
+    stereo.points.setTo(NO_POINT, ~fromMatcher(rig_, isElsewhere ? support.mask : support.nearby));
     result.rows = checkRows(rig_, stereo);
     if (!(support.supported >= FEWEST_MATCHED*(double)image1.total()) || !(support.share() >= FEWEST_SUPPORTED))
-        result.refusal = whyNothingFits(seen, image1, image2);
+        result.refusal = whyNothingFits(seen, mostRows(result.rows), image1, image2);
     else
     {
         judgeRows(image1, image2, support, result);
@@ -246,17 +248,17 @@ void StereoChecker::judgeRows(const Mat& image1, const Mat& image2, const MatchS
 
 std::string StereoChecker::whatFeaturesSay(const PairDiagnosis& diagnosis) const
 {
-    const std::string rows = std::isnan(diagnosis.rows) ? "" : format("features that are alike in both images are %.2g px off their rows "
+    const std::string rows = !std::isfinite(diagnosis.rows) ? "" : format("features that are alike in both images are %.2g px off their rows "
                                                                       "(median): ", diagnosis.rows);
     if (!diagnosis.mistake.empty())
         return rows + diagnosis.mistake;
     return rows + "calibration and images do not fit; has a camera or a window moved, is '" + file_ + "' of this rig?";
 }
 
-std::string StereoChecker::whyNothingFits(const WideDepths& seen, const Mat& image1, const Mat& image2) const
+std::string StereoChecker::whyNothingFits(const WideDepths& seen, double mostRows, const Mat& image1, const Mat& image2) const
 {
     const PairDiagnosis diagnosis = diagnosePair(rig_.calibration(), image1, image2);
-    if (!diagnosis.mistake.empty() || diagnosis.rows > MOST_ROWS)
+    if (!diagnosis.mistake.empty() || diagnosis.rows > mostRows)
         return whatFeaturesSay(diagnosis);
     if (seen.outside() > MOST_OUTSIDE)
         return rangeText(rig_.depthRange()) + ": hardly anything that both images show lies there, but at depths of " + seenRange(seen)

@@ -59,7 +59,7 @@ private:
     void judgeRange(const WideDepths& seen, CheckedStereo& result) const;
     void judgeRows(const cv::Mat& image1, const cv::Mat& image2, const MatchSupport& support, CheckedStereo& result) const;
     std::string whatFeaturesSay(const PairDiagnosis& diagnosis) const;
-    std::string whyNothingFits(const WideDepths& seen, const cv::Mat& image1, const cv::Mat& image2) const;
+    std::string whyNothingFits(const WideDepths& seen, double mostRows, const cv::Mat& image1, const cv::Mat& image2) const;
 
     const RectifiedRig& rig_;
     MatcherOptions options_;

@@ -4,6 +4,7 @@
 #include "stereo/depth_picture.hpp"
 #include "console/file_output.hpp"
 #include "console/table.hpp"
+#include "math/quantile.hpp"
 #include "report/drawing.hpp"
 #include <opencv2/imgproc.hpp>
 #include <algorithm>
@@ -41,7 +42,7 @@ Range rangeOf(const cv::Mat& depth)
     const std::vector<float> sorted = sortedDepths(depth);
     if (sorted.empty())
         return {0, 1};
-    const double near = percentile(sorted, rare), far = percentile(sorted, 1 - rare);
+    const double near = cv::refract::quantile(sorted, rare), far = cv::refract::quantile(sorted, 1 - rare);
     const double middle = (near + far)/2, half = std::max((far - near)/2, flat*std::abs(middle) + 1e-30);
     return {middle - half, middle + half};
 }
@@ -171,11 +172,6 @@ std::vector<float> sortedDepths(const cv::Mat& depth)
             sorted.push_back(z);
     std::sort(sorted.begin(), sorted.end());
     return sorted;
-}
-
-double percentile(const std::vector<float>& sorted, double share)
-{
-    return sorted[std::min(sorted.size() - 1, (size_t)(share*(double)sorted.size()))];
 }
 
 std::vector<double> ticksOf(double from, double to, int about)

@@ -27,9 +27,6 @@ void writeRectified(const std::string& prefix, const cv::Mat& rectified1, const 
 //! The depths that are neither NaN nor infinite, in ascending order.
 std::vector<float> sortedDepths(const cv::Mat& depth);
 
-//! The depth below which that share of sorted ones is.
-double percentile(const std::vector<float>& sorted, double share);
-
 //! Round numbers (1, 2 or 5 times a power of ten apart) in a range, about as many as asked for.
 std::vector<double> ticksOf(double from, double to, int about);
 

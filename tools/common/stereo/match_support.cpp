@@ -44,15 +44,15 @@ const float ALIKE = 0.6f;           // correlation; true partners have more even
 const float FLAT = 0.25f;           // variance, grey levels squared, as rounding to 8 bits leaves
 const float CONTRAST = 4;           // times the variance of the noise: true partners then correlate by 0.75
 
-Mat greyFloat(const Mat& image)
+Mat toFloat(const Mat& image)
 {
     Mat result;
-    greyOf(image, BRIGHTNESS).convertTo(result, CV_32F);
+    image.convertTo(result, CV_32F);
     return result;
 }
 
 //! The second image as the first sees it.
-Mat moved(const Mat& second, const Mat& disparity, bool vertical)
+Mat moved(const Mat& second, const Mat& disparity)
 {
     Mat mapX(disparity.size(), CV_32F), mapY(disparity.size(), CV_32F), result;
     for (int y = 0; y < disparity.rows; y++)
@@ -61,8 +61,8 @@ Mat moved(const Mat& second, const Mat& disparity, bool vertical)
         for (int x = 0; x < disparity.cols; x++)
         {
             const float d = row[x], by = d == d ? d : 0;
-            mapX.at<float>(y, x) = (float)x - (vertical ? 0 : by);
-            mapY.at<float>(y, x) = (float)y - (vertical ? by : 0);
+            mapX.at<float>(y, x) = (float)x - by;
+            mapY.at<float>(y, x) = (float)y;
         }
     }
     cv::remap(second, result, mapX, mapY, cv::INTER_LINEAR, cv::BORDER_CONSTANT);
@@ -125,9 +125,9 @@ double MatchSupport::share() const
     return textured > 0 ? (double)supported/textured : std::numeric_limits<double>::quiet_NaN();
 }
 
-MatchSupport supportOf(const Mat& image1, const Mat& image2, const Mat& disparity, bool vertical)
+MatchSupport supportOf(const Mat& image1, const Mat& image2, const Mat& disparity)
 {
-    const Mat first = greyFloat(image1), second = moved(greyFloat(image2), disparity, vertical), matched = disparity == disparity;
+    const Mat first = toFloat(image1), second = moved(toFloat(image2), disparity), matched = disparity == disparity;
     const Mat mean1 = averaged(first), mean2 = averaged(second), product = averaged(first.mul(second));
     const Mat variance1 = averaged(first.mul(first)) - mean1.mul(mean1), variance2 = averaged(second.mul(second)) - mean2.mul(mean2);
     const Mat together = product - mean1.mul(mean2);

@@ -28,10 +28,9 @@ struct MatchSupport
 };
 
 /** In flat areas and by chance the patches of a match do not correlate.
-@param first, second rectified, 8-bit, grey or colour
-@param disparity CV_32F, px, of the first; NaN: no match
-@param vertical disparity runs along columns */
-MatchSupport supportOf(const cv::Mat& first, const cv::Mat& second, const cv::Mat& disparity, bool vertical);
+@param first, second as forMatcher() gives them
+@param disparity CV_32F, px along rows, of the first; NaN: no match */
+MatchSupport supportOf(const cv::Mat& first, const cv::Mat& second, const cv::Mat& disparity);
 
 } // namespace tools
 

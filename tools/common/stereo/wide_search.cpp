@@ -5,6 +5,7 @@
 #include "console/failure.hpp"
 #include "console/progress.hpp"
 #include "match/depth_range.hpp"
+#include "math/quantile.hpp"
 #include "stereo/dense_stereo.hpp"
 #include "stereo/depth_picture.hpp"
 #include "stereo/match_support.hpp"
@@ -60,14 +61,15 @@ std::vector<float> depthsOfFeatures(const Calibration& calibration, const Mat& i
     return depths;
 }
 
-cv::Vec2d depthRangeOf(const std::vector<float>& depths)
+cv::Vec2d depthRangeOf(const std::vector<float>& depths, const Calibration& calibration)
 {
     const double rare = 0.02, wider = 0.1;      // what has no details may reach a little farther
     if ((int)depths.size() < MIN_FEATURES)
         throw Failure(cv::format("the depth range of the scene could not be found, as only %d features match in both images: give "
                                  "--depth=NEAR,FAR, and check that the images are of one moment and LEFT is of camera 1",
                                  (int)depths.size()));
-    return cv::Vec2d(percentile(depths, rare)/(1 + wider), percentile(depths, 1 - rare)*(1 + wider));
+    const double nearest = cv::refract::quantile(depths, rare), near = nearest/(1 + wider);
+    return cv::Vec2d(isBeyondWindows(calibration, near) ? near : nearest, cv::refract::quantile(depths, 1 - rare)*(1 + wider));
 }
 
 namespace {
@@ -160,7 +162,7 @@ Mat disparityOf(const RectifiedRig& rig, const Mat& image1, const Mat& image2, d
         const Mat first = forMatcher(rig, pair.image[0]), second = forMatcher(rig, pair.image[1]);
         Mat found = match(first, second, slabs.from(k), slabs.disparities(k), MatcherOptions());
         removeBeyond(rig, pair, image1.size(), found);
-        const MatchSupport support = supportOf(first, second, found, false);
+        const MatchSupport support = supportOf(first, second, found);
         if (result.empty())
         {
             result = Mat(found.size(), CV_32F, NONE);

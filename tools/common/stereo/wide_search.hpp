@@ -19,9 +19,9 @@ namespace tools {
 @param image1, image2 of one moment, 8-bit, grey or colour */
 std::vector<float> depthsOfFeatures(const Calibration& calibration, const cv::Mat& image1, const cv::Mat& image2);
 
-/** Robust ends of the depths, a little wider.
+/** Robust ends of the depths, a little wider; nearer only where that is not in the window.
 @param depths ascending; throws Failure that asks for --depth if there are fewer than MIN_FEATURES */
-cv::Vec2d depthRangeOf(const std::vector<float>& depths);
+cv::Vec2d depthRangeOf(const std::vector<float>& depths, const Calibration& calibration);
 
 //! Depths at which both images look alike, whatever was asked for.
 struct WideDepths
