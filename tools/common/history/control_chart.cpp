@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 using namespace cv::refract;
 
@@ -85,16 +86,10 @@ struct Ewmas
 class DrawnHistories
 {
 public:
-    DrawnHistories(Eigen::Index count, double dof) : ewmas_(count, DRAWS), noise_(VectorXd::Ones(DRAWS))
-    {
-        // Of the noise's variance over its estimate: Wilson and Hilferty's cube.
-        const double variance = 2./(9.*dof);
-        for (double& ratio : noise_)
-            ratio = dof < EXACT ? std::pow(std::max(1e-3, 1. - variance + random_.gaussian(std::sqrt(variance))), -1.5) : 1.;
-    }
+    explicit DrawnHistories(Eigen::Index count) : ewmas_(count, DRAWS) {}
 
     //! The probability that the least one of all charts falls below with falseAlarm.
-    double add(const Innovation& innovation, const std::vector<int>& parameters, double falseAlarm)
+    double add(const Innovation& innovation, const CheckRecord& check, const std::vector<int>& parameters, double falseAlarm)
     {
         MatrixXd w(innovation.rank(), DRAWS);
         if (w.size())
@@ -102,7 +97,7 @@ public:
             cv::Mat all(DRAWS, innovation.rank(), CV_64F, w.data());
             random_.fill(all, cv::RNG::NORMAL, 0., 1.);
         }
-        w = w*noise_.asDiagonal();
+        w = w*noiseOf(check).asDiagonal();
         ewmas_.add(parameters, innovation.stdAlone.cwiseInverse().asDiagonal()*product(innovation.rootAlone, w));
         const Eigen::RowVectorXd t2 = w.colwise().squaredNorm();
         const std::vector<double> least = leastProbabilities(t2, parameters, innovation.rank());
@@ -123,6 +118,16 @@ private:
         return least;
     }
 
+    //! One for all checks that take the same estimate. Of the noise's variance over it: Wilson and Hilferty's cube.
+    const VectorXd& noiseOf(const CheckRecord& check)
+    {
+        const auto [found, isNew] = noise_.emplace(std::make_pair(check.sigma, check.dof), VectorXd::Ones(DRAWS));
+        const double variance = 2./(9.*check.dof);
+        for (int i = 0; isNew && check.dof < EXACT && i < DRAWS; i++)
+            found->second[i] = std::pow(std::max(1e-3, 1. - variance + random_.gaussian(std::sqrt(variance))), -1.5);
+        return found->second;
+    }
+
     //! By others that have none.
     void replaceAlarms(const std::vector<double>& least, double critical)
     {
@@ -134,13 +139,14 @@ private:
             while (least[other] < critical)
                 other = random_.uniform(0, DRAWS);
             ewmas_.value.col(i) = ewmas_.value.col(other);
-            noise_[i] = noise_[other];
+            for (auto& noise : noise_)
+                noise.second[i] = noise.second[other];
         }
     }
 
     cv::RNG random_ = cv::RNG(0x5eed);
     Ewmas ewmas_;
-    VectorXd noise_;            // over its estimate
+    std::map<std::pair<double, double>, VectorXd> noise_;       // over its estimate; by that and its degrees of freedom
 };
 
 //! Of each parameter, whether its chart has the other sign.
@@ -212,12 +218,12 @@ std::vector<ChartLimit> chartLimits(const CheckHistory& history, const MatrixXd&
     if (history.checks.empty())
         return limits;
     InnovationFilter filter(covariance);
-    DrawnHistories drawn(firstParameters(history.changes).back(), history.checks[0].dof);
+    DrawnHistories drawn(firstParameters(history.changes).back());
     for (const CheckRecord& check : history.checks)
     {
         const Innovation innovation = filter.add(check, history.changes, check.score);
         ChartLimit limit;
-        limit.critical = drawn.add(innovation, parametersOf(check, history.changes), falseAlarm);
+        limit.critical = drawn.add(innovation, check, parametersOf(check, history.changes), falseAlarm);
         limit.limit = whereFalling(normalTail, limit.critical);
         limit.limitT2 = whereFalling([&](double x) { return upperTailChiSquared(innovation.rank(), x); }, limit.critical);
         limits.push_back(limit);
