@@ -47,6 +47,21 @@ TEST_CASE("The width of edges is that of their blur", "[board quality]")
     CHECK(sharp.complaint().empty());
 }
 
+TEST_CASE("Noise beside an edge does not widen it", "[board quality]")
+{
+    const DrawnBoard board({7, 6}, 80., 0.);
+    cv::Mat image, noise(board.image.size(), CV_32F);
+    blurred(board.image, 0.7, 0.7).convertTo(image, CV_32F, 0.3, 60);
+    cv::RNG random(17);
+    random.fill(noise, cv::RNG::NORMAL, 0., 3.);
+    cv::Mat(image + noise).convertTo(image, CV_8U);
+    const BoardQuality quality = qualityOf(image, board);
+    CAPTURE(quality.words());
+    CHECK(quality.contrast == Approx(51).epsilon(0.1));
+    CHECK(quality.worstEdge() < 1.5*widthOf(0.7));
+    CHECK(quality.complaint().empty());
+}
+
 TEST_CASE("A board that moves is blurred in one direction, also when it is turned", "[board quality]")
 {
     for (const double degrees : {0., 90., 180.})

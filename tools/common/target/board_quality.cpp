@@ -47,18 +47,19 @@ Edge edgeOf(const std::vector<double>& values, double length)
     const size_t end = std::max<size_t>(2, values.size()/6);
     const double first = median(std::vector<double>(values.begin(), values.begin() + (long)end));
     const double last = median(std::vector<double>(values.end() - (long)end, values.end())), step = last - first;
-    // Where a level is passed: the last time from this side for the lower, the first time for the upper.
-    const auto passed = [&](double share) {
-        const double level = first + share*step;
-        for (size_t i = 1; i < values.size(); i++)
-            if ((values[i] - level)*step >= 0)
-            {
-                const double before = values[i - 1], rise = values[i] - before;
-                return (double)i - (rise != 0 ? std::clamp((values[i] - level)/rise, 0., 1.) : 0.);
-            }
-        return (double)values.size();
+    const auto isPast = [&](size_t i, double share) { return (values[i] - first - share*step)*step >= 0; };
+    const auto passed = [&](size_t i, double share) {       // between i - 1 and i
+        const double rise = values[i] - values[i - 1];
+        return (double)i - (rise != 0 ? std::clamp((values[i] - first - share*step)/rise, 0., 1.) : 0.);
     };
-    return {(passed(0.9) - passed(0.1))*length/(double)(values.size() - 1), std::abs(step)};
+    // Where the upper level is passed for the first time, and the lower one for the last time before: noise is no edge.
+    size_t upper = 1;
+    while (upper + 1 < values.size() && !isPast(upper, 0.9))
+        upper++;
+    size_t lower = upper;
+    while (lower > 1 && isPast(lower - 1, 0.1))
+        lower--;
+    return {(passed(upper, 0.9) - passed(lower, 0.1))*length/(double)(values.size() - 1), std::abs(step)};
 }
 
 //! Whether there is an edge between two neighbours that tells: between two tags it is short.
