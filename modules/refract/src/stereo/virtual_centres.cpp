@@ -37,6 +37,8 @@ Vec2d virtualCentreRange(const Camera& camera)
     const double RARE = 0.1;            // of the rays on either side: those along the window may meet its axis anywhere
     const double NEAR = 0.1;            // of how deep the window is, beside a range that is a point
     const std::vector<double>& lens = camera.lens().parameters();
+    const Size known = camera.imageSize();      // else its middle is at the principal point
+    const Size2d size = known.empty() ? Size2d(2*lens[2], 2*lens[3]) : Size2d(known);
     std::vector<double> taus;
     for (int row = 0; row <= STEPS; row++)
     {
@@ -45,8 +47,8 @@ Vec2d virtualCentreRange(const Camera& camera)
         uchar status[STEPS + 1] = {};
         for (int i = 0; i <= STEPS; i++)
         {
-            u[i] = 2*lens[2]*i/STEPS;
-            v[i] = 2*lens[3]*row/STEPS;
+            u[i] = size.width*i/STEPS;
+            v[i] = size.height*row/STEPS;
         }
         camera.unproject(STEPS + 1, u, v, rays, status);
         for (int i = 0; i <= STEPS; i++)
