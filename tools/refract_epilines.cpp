@@ -85,10 +85,10 @@ cv::Vec2d usualDepthRange(const Calibration& rig, const std::vector<Point2d>& po
     return cv::Vec2d(cv::norm(rig.extrinsics[1].t), std::numeric_limits<double>::infinity());
 }
 
-cv::Mat readRaw(const std::string& path, const cv::refract::RefractiveCamera& camera)
+cv::Mat readRaw(const std::string& path, const Calibration& rig, int camera)
 {
-    const cv::Mat image = readGrey(path);
-    requireSize(image, path, camera.imageSize());
+    const cv::Mat image = readGrey(path, rig.channel);
+    requireSize(image, path, rig.cameras[camera].camera->imageSize());
     return image;
 }
 
@@ -165,8 +165,8 @@ int refract_epilines_main(int argc, char** argv)
             throw Failure("'" + options.calibration + "' has one camera; epipolar curves need a calibrated pair "
                           "(refract_calib --direct2 --glass2)");
         rig = firstTwoCameras(rig);
-        const cv::Mat image1 = readRaw(options.image1, *rig.cameras[0].camera);
-        const cv::Mat image2 = readRaw(options.image2, *rig.cameras[1].camera);
+        const cv::Mat image1 = readRaw(options.image1, rig, 0);
+        const cv::Mat image2 = readRaw(options.image2, rig, 1);
         std::vector<Point2d> points, partners;
         std::string contradiction;
         if (options.target.given())

@@ -11,6 +11,7 @@
 #include "console/cli.hpp"
 #include "console/csv.hpp"
 #include "console/file_output.hpp"
+#include "console/numbers.hpp"
 #include "console/table.hpp"
 #include "console/view_names.hpp"
 
@@ -184,12 +185,14 @@ std::vector<std::string> rowOf(const std::string& name, const std::vector<Measur
         answers += m.answers();
         points += (int)m.points.size();
     }
+    const auto digits = [](double value, int least, double of, bool sign = false) {       // more than of millimetres, of metres
+        return rounded(value, of > 0. ? std::max(least, decimalsOf(of)) : least, sign); };
+    const double rms = std::sqrt(squares/std::max(lengths, 1)), meanSigma = depthSigma/std::max(answers, 1);
     std::vector<std::string> row = {name, format("%d of %d", answers, points),
-                                    answers ? format("%.1f ... %.1f", near, far) : "-",
-                                    !answers ? "-" : std::isnan(depthSigma) ? "unknown" : format("%.4f", depthSigma/answers)};
+                                    answers ? digits(near, 1, far/100) + " ... " + digits(far, 1, far/100) : "-",
+                                    !answers ? "-" : std::isnan(depthSigma) ? "unknown" : digits(meanSigma, 4, meanSigma)};
     if (lengthsMeasured && lengths)
-        row.insert(row.end(), {format("%.4f", std::sqrt(squares/lengths)), format("%+.4f", sum/lengths),
-                               format("%.4f", largest)});
+        row.insert(row.end(), {digits(rms, 4, rms), digits(sum/lengths, 4, rms, true), digits(largest, 4, rms)});
     else if (lengthsMeasured)
         row.insert(row.end(), {"-", "-", "-"});
     return row;

@@ -176,8 +176,11 @@ private:
         rows.back().isShift = true;
         chart(name + ": centre", isTube ? std::vector<std::string>{"1", "2"} : std::vector<std::string>{"x", "y", "z"});
         if (isTube)
+        {
             add("axis of the " + name + " turned by", c, {angle(2)}, [c, u, v](RigModel& rig, const VectorXd& d) {
                 turnAxis(rig, c, d[0]*u + d[1]*v); });
+            rows.back().isAxis = true;
+        }
         add("radius of the " + name + " changed by", c, {length(1, WIDE*window.radius)},
             [c](RigModel& rig, const VectorXd& d) { changePane(rig, c, [&](GlassWindow& w) { w.radius += d[0]; }); });
         rows.back().isOfAnotherPane = true;

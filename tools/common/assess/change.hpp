@@ -28,6 +28,7 @@ struct Change
     //! Changes the rig by these parameters; 0: not at all.
     std::function<void(RigModel& rig, const VectorXd& delta)> apply;
     bool isTilt = false;        //!< of the window of that camera
+    bool isAxis = false;        //!< a turn of its tube's axis
     bool isShift = false;       //!< of the centre of its dome or tube
     bool isOfAnotherPane = false;       //!< thickness, index, wedge: one that stays where it is keeps them
     //! Of what explains a scene as well as others, the lesser is told first: what moves most easily.

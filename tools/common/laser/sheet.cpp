@@ -172,7 +172,7 @@ Sheet readSheet(const std::string& filename, const Calibration& calibration)
     fs["unit"] >> sheet.unit;
     fs["camera_parameters"] >> camera;
     if (plane.size() != 4 || sheet.covariance.size() != Size(state, state) || sheet.byParameters.rows != state || !(sheet.scale > 0.) ||
-        depth.size() != 2)
+        depth.size() != 2 || laserColourOf(colour) > LASER_ANY)
         throw Failure("'" + filename + "' is not a sheet of light: it must be what refract_laser --sheet-out wrote");
     sheet.plane = Vec4d(plane.data());
     sheet.depth = Vec2d(depth.data());

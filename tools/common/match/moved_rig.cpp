@@ -59,7 +59,7 @@ MatrixXd byChanges(const RigModel& rig, const Vec3d& middle, const std::function
 MatrixXd byTurns(const RigModel& rig, const MayHaveTurned& turned)
 {
     return byChanges(rig, Vec3d(0, 0, 1), [&](const Change& change) {
-        const double std = !isTurn(change) ? 0. : change.isTilt ? turned.windows : turned.ofCamera(change.turnedCamera());
+        const double std = !isTurn(change) ? 0. : change.isTilt || change.isAxis ? turned.windows : turned.ofCamera(change.turnedCamera());
         return VectorXd(VectorXd::Constant(change.size(), std*DEGREE)); });
 }
 

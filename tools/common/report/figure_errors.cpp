@@ -74,7 +74,7 @@ Figure drawErrorOverRange(const RigCalibration& c, const Assessment& assessment)
          << "set xrange [" << rows.front()[0]*0.95 << ':' << rows.back()[0]*1.05 << "]\n"
          << "set xtics (";
     for (size_t i = 0; i < rows.size(); i++)
-        plot << (i ? ", " : "") << format("'%.0f' %.9g", rows[i][0], rows[i][0]);
+        plot << (i ? ", " : "") << format("'%.4g' %.9g", rows[i][0], rows[i][0]);
     plot << ") rotate by -45\nset key outside top center horizontal maxrows 2 samplen 2\n"
          << "set object 1 rectangle from " << depth[0] << ", graph 0 to " << depth[2]
          << ", graph 1 behind fillcolor rgb '#e0f2fe' fillstyle solid noborder\n"
