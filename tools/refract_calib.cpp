@@ -265,6 +265,16 @@ RigCalibration prepare(const Options& o, const Target* target)
     return c;
 }
 
+//! @param richest coefficients that --lens=auto tries
+void calibrateWithLens(const Options& o, int richest, const std::function<void()>& step, RigCalibration& c)
+{
+    if (o.lens == "auto")
+        c.lens = chooseLens(c.data, c.options, o.robust, richest);
+    if (!c.lens.scores.empty())
+        setLens(c.lens, c.options, richest);
+    calibrateImages(c, o.robust, step);
+}
+
 RigCalibration calibrate(const Options& o, bool quiet)
 {
     std::unique_ptr<const Target> target;
@@ -277,12 +287,18 @@ RigCalibration calibrate(const Options& o, bool quiet)
         c.notices.push_back(liquid);
     noticeSharedLens(o, c.notices);
     requireOneMoment({c.data, c.options, c.square, c.notices});
-    if (o.lens == "auto")
-        c.lens = chooseLens(c.data, c.options, o.robust);
-    if (!c.lens.scores.empty())
-        setLens(c.lens, c.options);
     Progress progress("calibrating", 5, quiet);
-    calibrateImages(c, o.robust, [&progress] { progress.step(); });
+    const auto step = [&progress] { progress.step(); };
+    const RigOptions given = c.options;
+    try
+    {
+        calibrateWithLens(o, RICHEST_LENS, step, c);
+    }
+    catch (const LensUndetermined&)
+    {
+        c.options = given;
+        calibrateWithLens(o, POLYNOMIAL_LENS, step, c);
+    }
     if (!o.crossValidation)
         return c;
     c.heldOut = holdOut(c.data, c.fit, c.options.flags);

@@ -228,3 +228,18 @@ TEST_CASE("Nothing is chosen for a lens that is known", "[lens_choice]")
     options.known[0] = bent();
     CHECK(chooseLens(dataOf(bent(), 15, false, 5), options, true).scores.empty());
 }
+
+TEST_CASE("Of a lens no more coefficients are left open than are asked for", "[lens_choice]")
+{
+    LensChoice choice;
+    choice.scores.push_back({"opencv", 0, 5, 0.1});
+    choice.leftOut.push_back(Mat::zeros(INTRINSICS + RICHEST_LENS, INTRINSICS + RICHEST_LENS, CV_64F));
+    choice.leftOut[0].at<double>(INTRINSICS + 5, INTRINSICS + 5) = 1;          // k4, of a rational lens
+    for (const int richest : {RICHEST_LENS, POLYNOMIAL_LENS})
+    {
+        RigOptions options;
+        setLens(choice, options, richest);
+        CHECK(options.lensCoefficients == 5);
+        CHECK(options.carriedCoefficients(0) == richest);
+    }
+}

@@ -48,6 +48,15 @@ bool isSlowToStart(const CalibrationInput& input)
     return solid && !known;
 }
 
+//! Coefficients of the lens that was chosen, or that were left out and may be anything that the images leave open.
+bool carriesRational(const RigCalibration& c)
+{
+    for (int camera = 0; camera < c.data.cameraCount; camera++)
+        if (!c.options.known[camera] && c.options.carriedCoefficients(camera) > POLYNOMIAL_LENS)
+            return true;
+    return false;
+}
+
 //! Not of what was given, but of where a fit ended.
 bool isOfBadFit(CalibrationError::Cause cause)
 {
@@ -72,6 +81,8 @@ void calibrateImages(RigCalibration& c, bool robust, const std::function<void()>
         std::optional<RigModel> only;
         const bool lookedAtImages = requireNoMixUp(input, mixUps, only);
         plain = fitPlainly(input, only);
+        if (plain.isUndetermined && !c.lens.scores.empty() && carriesRational(c))
+            throw LensUndetermined("the images do not tell the coefficients of a rational lens: give --lens=opencv5");
         const bool suspicious = isSuspicious(input, plain);
         fitsPlainly = isSound(input, plain, suspicious);
         if (suspicious)

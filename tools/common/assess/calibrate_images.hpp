@@ -5,9 +5,17 @@
 #define REFRACT_TOOLS_CALIBRATE_IMAGES_HPP
 
 #include "assess/rig_calibration.hpp"
+#include "console/failure.hpp"
 #include <functional>
 
 namespace tools {
+
+//! The images fit a rational lens, but do not tell its coefficients: choose, and leave open, no more than a polynomial's.
+class LensUndetermined : public Failure
+{
+public:
+    using Failure::Failure;
+};
 
 /** Lens and start, wrong points, the fit, and what a user would do instead. Throws Failure with the likely causes where the images do
 not fit what is given.

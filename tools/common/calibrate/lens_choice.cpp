@@ -14,8 +14,6 @@ namespace tools {
 
 namespace {
 
-const int RICHEST = 8;                  // coefficients that are tried
-const int POLYNOMIAL = 5;               // at most; more are of a rational lens
 const int MOST_IMAGES = 60;             // of a camera: more decide nothing else
 const int MIN_HELD_OUT = 4;             // images; of fewer, parts of the target are held out (selectLensCoefficients)
 const int TWO = GLASS_FIX_TANGENT_DIST; // with four coefficients: k1 and k2
@@ -91,7 +89,8 @@ LensImages glassImages(const RigData& data, const std::vector<int>& cameras)
 }
 
 //! Lenses to start from, with as many coefficients as may be.
-std::vector<Ptr<RefractiveCamera>> startLenses(const RigData& data, const LensImages& images, bool fisheye, const GlassWindow& window)
+std::vector<Ptr<RefractiveCamera>> startLenses(const RigData& data, const LensImages& images, bool fisheye, int richest,
+                                               const GlassWindow& window)
 {
     std::vector<Ptr<RefractiveCamera>> cameras;
     for (size_t k = 0; k < images.cameras.size(); k++)
@@ -101,20 +100,21 @@ std::vector<Ptr<RefractiveCamera>> startLenses(const RigData& data, const LensIm
         const Ptr<RefractiveCamera> lens = fisheye ? calibratePinhole(images.views[k], size, FISHEYE_LENS, 0, rms)
                                                    : calibratePinhole(images.views[k], size, 4, TWO, rms);
         cameras.push_back(fisheye ? RefractiveCamera::createFisheye(lens->cameraMatrix(), std::vector<double>(4, 0.), window)
-                                  : RefractiveCamera::create(lens->cameraMatrix(), std::vector<double>(RICHEST, 0.), window));
+                                  : RefractiveCamera::create(lens->cameraMatrix(), std::vector<double>(richest, 0.), window));
     }
     return cameras;
 }
 
 //! Of one model; nothing where it cannot be fitted.
-LensChoice chooseCoefficients(const RigData& data, const LensImages& images, bool fisheye, const RigOptions& options, bool robust)
+LensChoice chooseCoefficients(const RigData& data, const LensImages& images, bool fisheye, int richest, const RigOptions& options,
+                              bool robust)
 {
     LensChoice choice;
     choice.direct = images.glass.empty();
     choice.byImages = (int)images.object.size() >= MIN_HELD_OUT;
     try
     {
-        const std::vector<Ptr<RefractiveCamera>> cameras = startLenses(data, images, fisheye,
+        const std::vector<Ptr<RefractiveCamera>> cameras = startLenses(data, images, fisheye, richest,
                                                                        choice.direct ? GlassWindow() : options.window);
         std::vector<int> windows;
         for (int c : images.cameras)
@@ -178,7 +178,7 @@ std::string LensChoice::sentence() const
                   byImages ? "images" : "parts of the target", direct ? "" : " through the window", lens().px) + others;
 }
 
-LensChoice chooseLens(const RigData& data, const RigOptions& options, bool robust)
+LensChoice chooseLens(const RigData& data, const RigOptions& options, bool robust, int richest)
 {
     const std::vector<int> cameras = unknownCameras(data, options);
     if (cameras.empty())
@@ -190,17 +190,17 @@ LensChoice chooseLens(const RigData& data, const RigOptions& options, bool robus
             return LensChoice();
         images = glassImages(data, cameras);
     }
-    LensChoice choice = chooseCoefficients(data, images, false, options, robust);
+    LensChoice choice = chooseCoefficients(data, images, false, richest, options, robust);
     if (choice.undetermined)
         return LensChoice();
     // A lens that k1 and k2 describe is not looked at as a fisheye. Where more coefficients find no good fit, they may be the best of bad.
     if (!choice.scores.empty() && choice.lens().coefficients <= 2 && choice.lens().px < DESCRIBED)
         return choice;
-    const LensChoice fisheye = chooseCoefficients(data, images, true, options, robust);
+    const LensChoice fisheye = chooseCoefficients(data, images, true, richest, options, robust);
     if (fisheye.scores.empty())
         return choice;
     const bool better = choice.scores.empty()
-        || fisheye.lens().px < (choice.lens().coefficients > POLYNOMIAL ? AS_GOOD : CLEARLY_BETTER)*choice.lens().px;
+        || fisheye.lens().px < (choice.lens().coefficients > POLYNOMIAL_LENS ? AS_GOOD : CLEARLY_BETTER)*choice.lens().px;
     const int before = (int)choice.scores.size();
     choice.direct = fisheye.direct;
     choice.byImages = fisheye.byImages;
@@ -214,7 +214,7 @@ LensChoice chooseLens(const RigData& data, const RigOptions& options, bool robus
     return choice;
 }
 
-void setLens(const LensChoice& choice, RigOptions& options)
+void setLens(const LensChoice& choice, RigOptions& options, int richest)
 {
     static const int LENGTHS[] = { 0, 4, 4, 4, 4, 5, 8, 8, 8 };     // of OpenCV's coefficients, among which are so many
     const bool isFisheye = choice.lens().model == "fisheye";
@@ -228,6 +228,7 @@ void setLens(const LensChoice& choice, RigOptions& options)
         for (int i = INTRINSICS; i < prior.rows; i++)
             if (prior.at<double>(i, i) > 0)
                 longest = std::max(longest, LENGTHS[i - INTRINSICS + 1]);
+    longest = std::min(longest, richest);
     for (Mat& prior : options.leftOut)
         if (prior.empty() || countNonZero(prior == prior) == 0)      // NaN: nothing
             prior = Mat();

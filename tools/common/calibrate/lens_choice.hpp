@@ -19,6 +19,9 @@ struct LensScore
     double px;                  //!< held-out RMS; NaN: it could not be fitted
 };
 
+const int RICHEST_LENS = 8;             // coefficients that are tried
+const int POLYNOMIAL_LENS = 5;          // at most; more are of a rational lens
+
 struct LensChoice
 {
     std::vector<LensScore> scores = {};     //!< empty: nothing was chosen
@@ -36,10 +39,12 @@ struct LensChoice
 
 //! Empty where all lenses are known, no candidate can be fitted, or the images do not determine one.
 //! @param robust points far from the richest lens's fit do not count
-LensChoice chooseLens(const RigData& data, const RigOptions& options, bool robust);
+//! @param richest coefficients that are tried, 5 or 8
+LensChoice chooseLens(const RigData& data, const RigOptions& options, bool robust, int richest = RICHEST_LENS);
 
 //! The options for the lens that was chosen.
-void setLens(const LensChoice& choice, RigOptions& options);
+//! @param richest coefficients, of those that are left open too
+void setLens(const LensChoice& choice, RigOptions& options, int richest = RICHEST_LENS);
 
 } // namespace tools
 

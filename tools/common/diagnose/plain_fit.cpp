@@ -3,6 +3,7 @@
 
 #include "diagnose/plain_fit.hpp"
 #include "calibrate/fit.hpp"
+#include "calibrate/lens_choice.hpp"
 #include "calibrate/parameter_columns.hpp"
 #include "calibrate/priors.hpp"
 #include "console/numbers.hpp"
@@ -70,7 +71,7 @@ int countSeen(const View& view, int cameras)
     return count;
 }
 
-const int ITERATIONS = 40;
+const int ITERATIONS = 40, RATIONAL_ITERATIONS = 400;       // whose coefficients make up for each other, so that a fit creeps
 const double LEFT_BY_CAUSE = 0.8;       // of the residuals, at most, if a wrong value is what is wrong,
 const double CLEAN = 1.3;               // and no more than this times what each image has by itself
 
@@ -226,7 +227,8 @@ PlainFit fitPlainly(const CalibrationInput& input, const std::optional<RigModel>
         plain.noise = imageNoise(start, input.data.views).sigma;
         try
         {
-            const Fit fit = fitAllImages(input.data, start, sources, options.flags, ITERATIONS, found.has_value());
+            const int iterations = options.lensCoefficients > POLYNOMIAL_LENS ? RATIONAL_ITERATIONS : ITERATIONS;
+            const Fit fit = fitAllImages(input.data, start, sources, options.flags, iterations, found.has_value());
             plain.noise = std::min(plain.noise, imageNoise(fit.rig, input.data.views).sigma);
             plain.px = medianCornerError(input.data, residualsOf(input.data, fit));
             if (isOnlyMinimum(input.data, fit, options.flags))
@@ -235,6 +237,7 @@ PlainFit fitPlainly(const CalibrationInput& input, const std::optional<RigModel>
         }
         catch (const CalibrationError& e)
         {
+            plain.isUndetermined = e.cause == CalibrationError::UNDETERMINED;
             if (e.cause != CalibrationError::PAIRS_CONTRADICT)
                 throw;
             options.flags = input.options.flags;

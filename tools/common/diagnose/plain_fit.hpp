@@ -37,6 +37,7 @@ other by pixels. A fit that was forced through these ends far from the truth; th
 struct PlainFit
 {
     double px = NO_FIT;                         //!< medianCornerError
+    bool isUndetermined = false;                //!< images that fit do not tell all numbers
     double noise = 0.;                          //!< px, what smooth maps leave of each image (imageNoise); 0: not known
     std::optional<Contradiction> explained;     //!< a cause that explains all of its residuals
     std::optional<RigModel> only;               //!< the rig, if the search met no other minimum: later fits start there
