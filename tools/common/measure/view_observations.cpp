@@ -69,6 +69,8 @@ ViewDerivatives refinePose(const RigModel& rig, ViewObservations& observed)
     for (int i = 0; i < ITERATIONS; i++)
     {
         const VectorXd step = PivotedQR(derivatives.byPose).solve(VectorXd(observed.pixels - derivatives.predicted));
+        if (!step.allFinite())          // a point has no image, or nothing holds the pose
+            throw Failure("no pose of the target explains its points: with this calibration a camera does not see some of them");
         observed.move(step);
         derivatives = differentiateView(rig, observed.objectPoints, observed.rvec, observed.tvec, observed.images);
     }
