@@ -119,28 +119,11 @@ std::vector<Mistake> mistakesOf(const RigModel& rig, cv::Size size)
     return mistakes;
 }
 
-//! Ascending: by how much the two rays of each pair of features miss each other, px; infinite where they have no point.
+//! Ascending.
 std::vector<double> missesOf(const Undone& pair)
 {
-    const Calibration& c = pair.calibration;
-    std::vector<double> misses(pair.partners.pixels1.size(), INFINITY);
-    if (misses.empty())
-        return misses;
     std::vector<cv::Point3d> points;
-    std::vector<uchar> status;
-    Pixels seen[2];
-    const auto &camera1 = c.cameras[0].camera, &camera2 = c.cameras[1].camera;
-    cv::refract::triangulateRefractive(camera1, camera2, c.extrinsics[1].R, c.extrinsics[1].t, pair.partners.pixels1,
-                                       pair.partners.pixels2, points, status);
-    cv::refract::refractiveProjectPoints(points, Vec3d(), Vec3d(), camera1, seen[0]);
-    cv::refract::refractiveProjectPoints(points, c.extrinsics[1].R, c.extrinsics[1].t, camera2, seen[1]);
-    for (size_t i = 0; i < points.size(); i++)
-    {
-        const Point2d off1 = seen[0][i] - pair.partners.pixels1[i], off2 = seen[1][i] - pair.partners.pixels2[i];
-        const double miss = std::sqrt(2*(off1.dot(off1) + off2.dot(off2)));
-        if (status[i] == 0 && points[i].z > 0 && std::isfinite(miss))
-            misses[i] = miss;
-    }
+    std::vector<double> misses = missesOf(pair.calibration, pair.partners, points);
     std::sort(misses.begin(), misses.end());
     return misses;
 }
@@ -188,6 +171,22 @@ std::string nameMistakes(const std::vector<Mistake>& mistakes, const Undone& asG
 }
 
 } // namespace
+
+std::vector<double> missesOf(const Calibration& calibration, const Partners& partners, std::vector<cv::Point3d>& points)
+{
+    std::vector<double> misses(partners.pixels1.size(), INFINITY);
+    if (misses.empty())
+        return misses;
+    std::vector<uchar> status;
+    Mat errors;
+    cv::refract::triangulateRefractive(calibration.cameras[0].camera, calibration.cameras[1].camera, calibration.extrinsics[1].R,
+                                       calibration.extrinsics[1].t, partners.pixels1, partners.pixels2, points, status, 0, 1.,
+                                       cv::noArray(), cv::noArray(), errors);
+    for (size_t i = 0; i < misses.size(); i++)
+        if (status[i] == 0 && points[i].z > 0)      // which is in the middle: each pixel is off by half of what the rays miss
+            misses[i] = std::sqrt(2.)*norm(errors.row((int)i));
+    return misses;
+}
 
 PairDiagnosis diagnosePair(const Calibration& calibration, const Mat& image1, const Mat& image2)
 {

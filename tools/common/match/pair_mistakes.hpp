@@ -5,12 +5,17 @@
 #define REFRACT_TOOLS_PAIR_MISTAKES_HPP
 
 #include "calibrate/calib_file.hpp"
+#include "match/features.hpp"
 
 #include <string>
 
 /* Why a pair does not fit its calibration: mistakes, each undone and asked again how many features of both images then have a
 point. Only where something is wrong, as finding features takes as long as matching all pixels. */
 namespace tools {
+
+/** By how much the two rays of each pair of features miss each other, px; infinite where they have no point before the cameras.
+@param points written: camera-1 frame, of each pair */
+std::vector<double> missesOf(const Calibration& calibration, const Partners& partners, std::vector<cv::Point3d>& points);
 
 struct PairDiagnosis
 {

@@ -248,8 +248,8 @@ void StereoChecker::judgeRows(const Mat& image1, const Mat& image2, const MatchS
 
 std::string StereoChecker::whatFeaturesSay(const PairDiagnosis& diagnosis) const
 {
-    const std::string rows = !std::isfinite(diagnosis.rows) ? "" : format("features that are alike in both images are %.2g px off their rows "
-                                                                      "(median): ", diagnosis.rows);
+    const std::string rows = !std::isfinite(diagnosis.rows) ? "" : format("features that are alike in both images are %.2g px off their "
+                                                                          "rows (median): ", diagnosis.rows);
     if (!diagnosis.mistake.empty())
         return rows + diagnosis.mistake;
     return rows + "calibration and images do not fit; has a camera or a window moved, is '" + file_ + "' of this rig?";

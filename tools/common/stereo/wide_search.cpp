@@ -5,6 +5,7 @@
 #include "console/failure.hpp"
 #include "console/progress.hpp"
 #include "match/depth_range.hpp"
+#include "match/pair_mistakes.hpp"
 #include "math/quantile.hpp"
 #include "stereo/dense_stereo.hpp"
 #include "stereo/depth_picture.hpp"
@@ -32,31 +33,12 @@ const double SAME_POINT = 1.5;          // px
 std::vector<float> depthsOfFeatures(const Calibration& calibration, const Mat& image1, const Mat& image2)
 {
     const Partners partners = findPartners(greyOf(image1, calibration.channel), greyOf(image2, calibration.channel), MOST_DETAILS);
-    const std::vector<Point2d> &pixels1 = partners.pixels1, &pixels2 = partners.pixels2;
+    std::vector<Point3d> points;
+    const std::vector<double> misses = missesOf(calibration, partners, points);
     std::vector<float> depths;
-    if (pixels1.empty())
-        return depths;
-    const auto &camera1 = calibration.cameras[0].camera, &camera2 = calibration.cameras[1].camera;
-    std::vector<Point3d> points, known;
-    std::vector<uchar> status;
-    cv::refract::triangulateRefractive(camera1, camera2, calibration.extrinsics[1].R, calibration.extrinsics[1].t, pixels1,
-                                       pixels2, points, status);
-    std::vector<Point2d> known1, known2;
-    for (size_t i = 0; i < points.size(); i++)
-        if (status[i] == 0 && points[i].z > 0)
-        {
-            known.push_back(points[i]);
-            known1.push_back(pixels1[i]);
-            known2.push_back(pixels2[i]);
-        }
-    if (known.empty())
-        return depths;
-    std::vector<Point2d> seen1, seen2;
-    cv::refract::refractiveProjectPoints(known, cv::Vec3d(), cv::Vec3d(), camera1, seen1);
-    cv::refract::refractiveProjectPoints(known, calibration.extrinsics[1].R, calibration.extrinsics[1].t, camera2, seen2);
-    for (size_t i = 0; i < known.size(); i++)
-        if (cv::norm(seen1[i] - known1[i]) < SAME_POINT && cv::norm(seen2[i] - known2[i]) < SAME_POINT)
-            depths.push_back((float)known[i].z);
+    for (size_t i = 0; i < misses.size(); i++)
+        if (misses[i] < SAME_POINT)
+            depths.push_back((float)points[i].z);
     std::sort(depths.begin(), depths.end());
     return depths;
 }
