@@ -415,6 +415,10 @@ TEST_CASE("A tube is the same after its file", "[tube][file]")
     CHECK_THAT(refusalOfFile("shape: dome, axis: [0, 0, 1], radius: 50"), Contains("glass_window has 'axis', but its shape is dome"));
     CHECK_THAT(refusalOfFile("shape: tube, normal: [0, 0, 1], radius: 50"), Contains("glass_window has 'normal', but its shape is tube"));
     CHECK_THAT(refusalOfFile("normal: [0, 0, 1], curvature: 1"), Contains("glass_window has 'curvature', but its shape is flat"));
+    CHECK_THAT(refusalOfFile("normal: [0, 0, 1], outer_index: 1.333"), Contains("glass_window has no 'distance'"));
+    CHECK_THAT(refusalOfFile("shape: bent, normal: [0, 0, 1], curvature: 0.001"), Contains("glass_window has no 'distance'"));
+    CHECK_THAT(refusalOfFile("normal: [0, 0, 1], outer_index: 1.333, distance: 0"), !Contains("distance"));
+    CHECK_THAT(refusalOfFile("normal: [0, 0, 1], outer_index: 1.333, inner_index: 1.333"), !Contains("distance"));
 }
 
 TEST_CASE("A tube's parameters are its centre, its axis and its radius", "[tube][parameters]")

@@ -193,6 +193,9 @@ void GlassWindow::read(const FileNode& node)
     window.outerIndex = readNumber(node, "outer_index", 1);
     window.wedge = readPairs(node, "wedge");
     readMaterials(node, window);
+    const bool needsDistance = window.shape == WINDOW_BENT || (window.shape == WINDOW_FLAT && window.innerIndex != window.outerIndex);
+    if (needsDistance && node["distance"].empty())
+        CV_Error(Error::StsParseError, "glass_window has no 'distance', which counts where it is bent or has different media on its sides");
     window.check();
     *this = window;
 }
