@@ -261,7 +261,8 @@ std::string wrongOf(const Options& o, const Matches& matches, const GivenLengths
     robustly.robust = true;
     const MeasuredBundle measured = measuredBundle(robustly, matches, lengths, start);
     const auto adjustRobustly = [&](const BundleStart& from) { return adjustBundle(from, matches, lengths, true, ENOUGH_ITERATIONS); };
-    return wrongMatches(start, lengths, adjustRobustly, &measured, sigma, knownSigma, [&](int point) { return matches.names[point].text(); });
+    return wrongMatches(start, lengths, adjustRobustly, &measured, sigma, knownSigma,
+                        [&](int point) { return matches.names[point].text(); });
 }
 
 //! What is to be thought of it, and why it is not as the start says: what the images are comes before what that leads to.

@@ -160,15 +160,25 @@ std::string csvOf(const std::vector<MeasuredView>& measured, const std::vector<M
     return csv.text();
 }
 
+//! Points without those that another measurement has no answer for.
+std::vector<cv::Point3d> inBoth(std::vector<cv::Point3d> points, const std::vector<cv::Point3d>& others)
+{
+    for (size_t i = 0; i < points.size(); i++)
+        if (std::isnan(others[i].z))
+            points[i] = others[i];
+    return points;
+}
+
+//! @param shown whose lengths are compared, so that a wrong point that these leave out is not in the others' errors
 std::vector<std::string> rowOf(const std::string& name, const std::vector<MeasuredView>& measured,
-                               const std::vector<Measurement>& results, bool lengthsMeasured)
+                               const std::vector<Measurement>& results, const std::vector<Measurement>& shown, bool lengthsMeasured)
 {
     double squares = 0, sum = 0, largest = 0, near = std::numeric_limits<double>::infinity(), far = -near, depthSigma = 0;
     int lengths = 0, answers = 0, points = 0;
     for (size_t k = 0; k < results.size(); k++)
     {
         const Measurement& m = results[k];
-        for (const double error : lengthErrors(measured[k], m.points))
+        for (const double error : lengthErrors(measured[k], inBoth(m.points, shown[k].points)))
         {
             squares += error*error;
             sum += error;
@@ -221,12 +231,13 @@ void printTable(const Options& options, const Calibration& calibration, const st
         heading.insert(heading.end(), {"length RMS error", "mean error", "largest"});
     Table table(heading, 80);
     if (options.compare)
-        table.add(rowOf("glass ignored", measured, measureAll(options, withoutWindows(calibration), measured),
+        table.add(rowOf("glass ignored", measured, measureAll(options, withoutWindows(calibration), measured), results,
                         lengthsMeasured));
     for (size_t i = 0; i < others.size(); i++)
-        table.add(rowOf(stemOf(options.compareWith[i]), measured, measureAll(options, others[i], measured), lengthsMeasured));
+        table.add(rowOf(stemOf(options.compareWith[i]), measured, measureAll(options, others[i], measured), results,
+                        lengthsMeasured));
     const bool alone = !options.compare && options.compareWith.empty();
-    table.add(rowOf(alone ? "measured" : "with the window", measured, results, lengthsMeasured));
+    table.add(rowOf(alone ? "measured" : "with the window", measured, results, results, lengthsMeasured));
     std::cout << measured.size() << (measured.size() == 1 ? " view" : " views")
               << (calibration.channel == BRIGHTNESS || !options.files.points.empty() ? std::string()
                   : ", the " + nameOf(calibration.channel) + " channel of colour images, as calibrated")
@@ -318,8 +329,10 @@ int refract_measure_main(int argc, char** argv)
             const std::string cause = outside.empty() ? causeOf(options, calibration, measured) : "";
             throw Failure(!outside.empty() ? outside
                           : !contradiction.empty() ? contradiction + (cause.empty() ? "" : ". What explains them: " + cause)
-                          : "no point could be measured" + (cause.empty() ? ": are images and calibration of the same cameras?"
-                                                                          : ". What explains it: " + cause));
+                          : "no point could be measured"
+                              + (!cause.empty() ? ". What explains it: " + cause
+                                 : options.plane.empty() ? ": are images and calibration of the same cameras?"
+                                 : ": is --plane=" + options.plane + " beyond the window, in the camera's frame?"));
         }
         for (const std::string& text : {outside, contradiction})
             if (!text.empty())

@@ -65,8 +65,7 @@ double readStd(const CsvTable& table, const CsvTable::Row& row, int camera, cons
 //! Where it is no pixel of the camera, the columns are not those of the camera, or not raw.
 void requireInside(const cv::Point2d& pixel, const cv::Size& size, const std::string& where, int camera)
 {
-    const bool inside = pixel.x >= -0.5 && pixel.y >= -0.5 && pixel.x <= size.width - 0.5 && pixel.y <= size.height - 0.5;
-    if (!inside && size.area() > 0 && pixel.x == pixel.x)
+    if (isFarOutside(pixel, size))
         throw Failure(where + format(": (%g, %g) is outside the image of camera %d, which has %dx%d pixels; raw pixels are wanted, "
                                      "(0, 0) the middle of the first one", pixel.x, pixel.y, camera + 1, size.width, size.height));
 }

@@ -18,13 +18,10 @@ namespace tools {
 namespace {
 
 const double NOT_KNOWN = std::numeric_limits<double>::quiet_NaN();
-const double BEYOND = 1.;       // px: a corner that is found at the border may lie a little beyond it
 
 bool isOutside(const Calibration& calibration, size_t camera, const Point2d& pixel)
 {
-    const Size size = calibration.cameras[camera].camera->imageSize();
-    return !size.empty() && seen(pixel)
-        && !Rect2d(-BEYOND, -BEYOND, size.width + 2*BEYOND, size.height + 2*BEYOND).contains(pixel);
+    return isFarOutside(pixel, calibration.cameras[camera].camera->imageSize());
 }
 
 //! The sum of the ratios, and how it changes with each point of a view.

@@ -209,13 +209,11 @@ DetectedImages imagesWith(const std::vector<std::vector<cv::Point2d>>& points, c
     return set;
 }
 
-//! A corner found at the border may lie a little beyond it; one of another image size lies far.
+//! Points of another image size are not.
 void requireInside(const std::string& path, const std::string& image, const std::vector<cv::Point2d>& points, cv::Size size)
 {
-    const double BEYOND = 1.;
-    const cv::Rect2d allowed(-BEYOND, -BEYOND, size.width + 2*BEYOND, size.height + 2*BEYOND);
     for (const cv::Point2d& p : points)
-        if (seen(p) && !allowed.contains(p))
+        if (isFarOutside(p, size))
             throw Failure("'" + path + "': a point of '" + image + "' is at " + cv::format("(%g, %g)", p.x, p.y)
                           + ", outside of an image of " + sizeText(size) + ": check --image-size, or the size that the "
                           "calibration says");

@@ -103,6 +103,13 @@ private:
 //! True where the point was seen.
 inline bool seen(const cv::Point2d& p) { return p.x == p.x && p.y == p.y; }
 
+//! Out of an image by more than a pixel, as no corner found at its border is. @param size may be empty: not known
+inline bool isFarOutside(const cv::Point2d& p, cv::Size size)
+{
+    const double BEYOND = 1.;
+    return !size.empty() && (std::min(p.x, p.y) < -0.5 - BEYOND || p.x > size.width - 0.5 + BEYOND || p.y > size.height - 0.5 + BEYOND);
+}
+
 } // namespace tools
 
 #endif // REFRACT_TOOLS_TARGET_HPP
